@@ -16,6 +16,7 @@ from graphflow import GraphFileError, Node, Param, ParameterError, Publisher, Ti
 from graphflow.description import Joint, parse, read_robot
 from graphflow.msgs.sensor_msgs.msg import JointState
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.names import did_you_mean
 from graphflow.qos import LATCHED, SENSOR_DATA
 from graphflow.tf import Transform, Transforms
 
@@ -43,6 +44,7 @@ class RobotStatePublisher(Node):
             self.robot = parse(self.robot_description)
         self.published: dict[str, int] = {}
         self.heard = 0
+        self.has_warned = False
         self.begin()
         self.log.info("robot %s: %d links, %d joints", self.robot.name, len(self.robot.links), len(self.robot.joints))
 
@@ -90,6 +92,11 @@ class RobotStatePublisher(Node):
             self.published.clear()
         self.heard = now
         own = [name for name in positions if name in self.robot.joints]
+        if not own and positions and not self.has_warned:
+            self.has_warned = True
+            name = next(iter(positions))
+            hint = did_you_mean(name, self.robot.joints)
+            self.log.warning("joint_states has none of the robot's joints: it has no joint %r%s", name, hint)
         least = min((self.published.get(name, 0) for name in own), default=now)
         period = 1e9 / self.publish_frequency if self.publish_frequency else 0.0
         if stamp.nanoseconds < least + period and not self.ignore_timestamp:

@@ -47,6 +47,9 @@ def parse(text: str, name: str = "robot_description") -> Robot:
     Raises:
         GraphFileError: The text is not a robot description; all mistakes, with their places.
     """
+    if "<" not in text and (file := text.strip()).endswith((".urdf", ".xacro", ".xml")):
+        way = f'write file:={file}, or its text, as in robot_description:="$(cat {file})"'
+        raise GraphFileError([Problem(Place(name, 1, 1), f"{file!r} is the name of a file, not its text: {way}")])
     return _Reader().read(_tree(text, name))
 
 

@@ -25,6 +25,8 @@ ECHO = 1.0
 """Own messages per second received by a node from which an echo is reported."""
 LOST_PART, LOST_LEAST, EXPIRED_LEAST = 0.5, 20, 5
 """Share and number of dropped messages from which a loss is reported."""
+MISSED_LEAST = 3
+"""Missed deadlines or leases of an endpoint from which they are reported."""
 SHOWN = 10
 """Most nodes in a list, or texts of one node."""
 SKEW = 0.1
@@ -70,6 +72,7 @@ def examine(view: View, first: Look, second: Look) -> Health:
         *_rivals(view.cache),
         *_echoes(view.cache, then, counts, seconds),
         *_losses(counts),
+        *_missed(counts),
         *_floods(then, counts, seconds),
         *_refused(view.cache),
         *_complaints(now),
@@ -152,6 +155,18 @@ def _losses(now: Counts) -> Iterator[str]:
             yield (
                 f"{part} of {node} drops {100 * expired / received:.0f} % of its messages, which are older than their "
                 "lifespan when they arrive: give it a longer lifespan"
+            )
+
+
+def _missed(now: Counts) -> Iterator[str]:
+    """Report endpoints that do not keep what their own QoS profile promises, or get what it demands."""
+    for (node, part), numbers in now.items():
+        if (count := numbers.get("deadline_missed", 0.0)) >= MISSED_LEAST:
+            yield f"{part} of {node} has missed its deadline {count:.0f} times: have more sent, or allow more time"
+        if (count := numbers.get("liveliness_lost", 0.0)) >= MISSED_LEAST:
+            yield (
+                f"{part} of {node} has lost its liveliness {count:.0f} times: publish or assert_liveliness() within "
+                "its lease"
             )
 
 

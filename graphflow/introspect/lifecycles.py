@@ -45,7 +45,7 @@ def idle(view: View, timeout: float) -> Iterator[str]:
         steps = {LifecycleState.UNCONFIGURED: ("configure", "activate"), LifecycleState.INACTIVE: ("activate",)}
         if now in steps and not is_hidden(node):
             way = " && ".join(f"graphflow lifecycle set {node} {step}" for step in steps[now])
-            yield f"{node} is {now.label}, so that it handles and publishes nothing: {way}"
+            yield f"{node} is {now.label}, not active: {way}"
 
 
 def transitions(view: View, node: str, timeout: float, *, everything: bool = False) -> Sequence[TransitionDescription]:

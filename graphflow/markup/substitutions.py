@@ -156,7 +156,8 @@ class Substitutions:
             isinstance(self._args[name], Written) for name in found
         ):  # arguments of a launch file: ROS has no names in expressions
             expression = _VALUES.sub(r"'$(var \2)'", expression).replace('"', "'")
-            return f'; write $(eval "{expression}")'
+            pieces = re.sub(r"\$\(var (\w+)\)", r'", LaunchConfiguration("\1"), "', expression)
+            return f'; write $(eval "{expression}"), in Python PythonExpression(["{pieces}"])'
         expression = _VALUES.sub(lambda value: value[2], expression)
         try:
             self._eval([Word(expression, is_quoted=False)])

@@ -155,8 +155,7 @@ class Node(AttributeHints):
         return f'read a parameter with self.parameters.get("{name}"), or declare it in the class: {name} = Param(...)'
 
     def _instead_of(self, name: str) -> str:
-        is_unmade = name in ("_core", "log", "parameters")
-        return f"{type(self).__name__}.__init__ must call super().__init__(...) first" if is_unmade else ""
+        return f"{node_options.without_super(type(self))} first" if name in ("_core", "log", "parameters") else ""
 
     @property
     def name(self) -> str:

@@ -33,12 +33,12 @@ from graphflow.runtime.failures import Failures, report
 from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import Rosout
 from graphflow.runtime.mistakes import unrun
-from graphflow.runtime.mistakes.at_start import warn_at_start
+from graphflow.runtime.mistakes.at_start import warn_at_start, warn_of_variables
 from graphflow.runtime.mistakes.other_threads import call_soon
 from graphflow.runtime.mistakes.repeats import Repeats
 from graphflow.runtime.mistakes.slow_hooks import when_slow
 from graphflow.runtime.node_clock import NodeClock
-from graphflow.runtime.node_options import unused_remaps
+from graphflow.runtime.node_options import unused_remaps, without_super
 from graphflow.runtime.node_services import LoggerLevels, TypeDescriptions
 from graphflow.runtime.node_work import end_work, limited, placed
 from graphflow.runtime.parameters.params import ParameterChange, Parameters
@@ -275,6 +275,7 @@ class NodeCore:
             self.warn_unused_remaps()
             others = [(core.full_name, core.instance) for core in context.nodes if core is not self]
             warn_at_start(self.log, self.instance, others, is_regrouped=bool(self.groups.regrouping.groups))
+            warn_of_variables(self, self.instance)
             await self._begin()
         except BaseException:  # cancellation included: nothing stays open
             await self.stop()
@@ -333,6 +334,9 @@ class NodeCore:
         if self._context is not None and not self._context.is_here:
             call_soon(self, self.shutdown, ())
         elif self._ended is not None and not self._ended.done():
+            from graphflow.runtime.mistakes.kept_in_vain import warn_of_kept  # few nodes end themselves
+
+            warn_of_kept(self.parts, self.log, self.full_name)
             self._ended.set_result(None)
 
     async def wait_ended(self) -> None:
@@ -440,5 +444,5 @@ def core_of(node: object) -> NodeCore:
     check_node(node)
     core = vars(node).get("_core")
     if not isinstance(core, NodeCore):
-        raise DeclarationError(f"{type(node).__name__}.__init__ must call super().__init__(...)")
+        raise DeclarationError(without_super(type(node)))
     return core

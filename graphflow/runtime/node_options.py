@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Container, Iterator, Mapping, Sequence
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, is_dataclass
 from typing import Any, TypeVar
 
 from graphflow.errors import DeclarationError
@@ -82,13 +82,20 @@ def take(node: object) -> NodeOptions:
     return given[1]
 
 
+def without_super(cls: type) -> str:
+    """Return the sentence for a class whose `__init__` does not call its parent's."""
+    if is_dataclass(cls):
+        return f"leave out @dataclass above {cls.__name__}, whose __init__ it replaces; write word = Param(...)"
+    return f"{cls.__name__}.__init__ must call super().__init__(...)"
+
+
 def why_not(cls: type) -> str:
     """Return the reason why nodes of a class cannot be made, as a sentence; "" if they can."""
     init = inspect.unwrap(cls.__init__)  # type: ignore[misc]
     code = code_of(init)
     is_ours = init.__module__.startswith("graphflow.")
     if code is not None and not is_ours and not {"super", "__init__"} & {*code.co_names, *code.co_freevars}:
-        return f"{cls.__name__}.__init__ must call super().__init__(...)"
+        return without_super(cls)
     required = _required(cls)
     if required[:1] and required[0] in _NAMES:
         del required[0]

@@ -130,7 +130,7 @@ def _endpoints(profile: NetProfile | None) -> list[str]:
     try:
         found = [endpoint(text) for text in os.environ.get(CONNECT_VARIABLE, "").split()]
     except ValueError as error:
-        raise TransportError(str(error)) from None
+        raise TransportError(f"{CONNECT_VARIABLE}: {error}") from None
     if profile is None:
         return found
     for plain in (text for text in found if not text.startswith("tls/")):

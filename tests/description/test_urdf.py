@@ -118,6 +118,7 @@ def test_all_mistakes_come_together() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
+        ("arm.urdf", r"'arm.urdf' is the name of a file, not its text: write file:=arm.urdf, or its text"),
         ("<sdf/>", "the root element is <sdf>, not <robot>"),
         ('<!DOCTYPE r [<!ENTITY a "b">]><robot/>', "a document type is not read"),
         ("<robot>" + "<a>" * 200 + "</a>" * 200 + "</robot>", "elements nested too deeply"),

@@ -597,7 +597,7 @@ def test_programs_that_keep_their_names(lamps: Path) -> None:
     text = "for: {var: i, in: 1..3, nodes: {a: {pkg: lamp, exec: shine, keep_names: true, args: [$(var i)]}}}"
     assert [node.name for node in planned(lamps, text).nodes] == ["/a", "/a_2", "/a_3"]
     text = "for: {var: i, in: 1..2, nodes: {a: {pkg: lamp, exec: shine}}}"
-    with pytest.raises(GraphFileError, match="every round of the loop has the same node /a"):
+    with pytest.raises(GraphFileError, match="this makes the node /a more than once: put the loop's variable"):
         planned(lamps, text)
 
 

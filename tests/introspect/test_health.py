@@ -102,6 +102,16 @@ def test_expired_messages(expired: int, is_told: bool) -> None:
     assert told == ([f"{text}: give it a longer lifespan"] if is_told else [])
 
 
+@pytest.mark.parametrize(("count", "is_told"), [(3, True), (2, False)])
+def test_promises_that_are_not_kept(count: int, is_told: bool) -> None:
+    """A deadline, and the liveliness of a publisher that has to assert it."""
+    counters = {"publisher /a": {"deadline_missed": count}, "publisher /b": {"liveliness_lost": count}}
+    told = found(Seen(), [], look(a=counters)).faults  # type: ignore[arg-type]
+    deadline = f"publisher /a of /a has missed its deadline {count} times: have more sent, or allow more time"
+    lease = f"publisher /b of /a has lost its liveliness {count} times: publish or assert_liveliness() within its lease"
+    assert told == ([deadline, lease] if is_told else [])
+
+
 def test_a_flood_in_a_log() -> None:
     """Lines that were gathered count, too."""
     before, now = look(a={"log": {"lines": 5, "gathered": 0}}), look(a={"log": {"lines": 25, "gathered": 300}})

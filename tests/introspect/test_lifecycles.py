@@ -56,10 +56,10 @@ async def test_who_has_a_life_cycle(graph: Graph) -> None:
     [
         (
             1,
-            "unconfigured, so that it handles and publishes nothing: graphflow lifecycle set /lived configure && "
+            "unconfigured, not active: graphflow lifecycle set /lived configure && "
             "graphflow lifecycle set /lived activate",
         ),
-        (2, "inactive, so that it handles and publishes nothing: graphflow lifecycle set /lived activate"),
+        (2, "inactive, not active: graphflow lifecycle set /lived activate"),
         (3, ""),
         (99, ""),
     ],

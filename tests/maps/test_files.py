@@ -131,3 +131,11 @@ def test_files_that_are_not_there(tmp_path: Path) -> None:
         read_map(tmp_path / "hous.yaml")
     with pytest.raises(MapFileError, match=rf"^there is no folder {tmp_path}/plans$"):
         write_map(GRID, tmp_path / "plans" / "house")
+
+
+@pytest.mark.parametrize(("resolution", "is_told"), [(5.0, True), (0.05, False)])
+def test_large_cells(resolution: float, is_told: bool) -> None:
+    """A resolution in centimetres is doubted."""
+    grid = GridMap(GRID.cells, resolution, GRID.origin)
+    text = "cells of 5 m are large: resolution: is in metres, 0.05 for 5 cm"
+    assert files.coarseness(grid) == (text if is_told else "")

@@ -111,3 +111,14 @@ async def test_time_that_jumps_back(graph: Graph, caplog: pytest.LogCaptureFixtu
     await graph.settle()
     assert len(sent) == 2
     assert "the time has jumped back" in caplog.text
+
+
+async def test_joints_of_another_name(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """The first one is told, with the joints that there are; joints beside the robot's own are nothing."""
+    await graph.start(RobotStatePublisher(robot_description=ROBOT))
+    joints = graph.publisher(JointState, "/joint_states")
+    for message in (state(1.0, turn=0.1, wheel=0.0), state(2.0, turn_joint=0.1), state(3.0, turn_joint=0.2)):
+        joints.publish(message)
+        await graph.settle()
+    text = "joint_states has none of the robot's joints: it has no joint 'turn_joint'; there is fix, grip, turn"
+    assert [told for told in caplog.messages if "joint_states" in told] == [text]

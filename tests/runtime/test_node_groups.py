@@ -85,7 +85,7 @@ async def test_a_declared_group_holds_for_its_node(graph: Graph, limit: int | No
 
 def test_a_default_group_that_is_none() -> None:
     """The error has the declaration."""
-    with pytest.raises(DeclarationError, match=r"default_group is a Group: write default_group = Group\(1\)"):
+    with pytest.raises(DeclarationError, match=r"default_group is of the class Group: write .* = Group\(1\)"):
 
         class Wrong(Node):
             default_group = Group  # type: ignore[assignment]
@@ -421,3 +421,11 @@ async def test_blocking_handlers_of_a_threaded_group_hold_the_slot_and_not_the_l
     assert node.heavy.running == 1
     gate.set()
     await eventually(lambda: not node.heavy.running)
+
+
+def test_an_error_budget_that_is_none() -> None:
+    """The error has the declaration."""
+    with pytest.raises(DeclarationError, match=r"error_budget is of the class ErrorBudget: write error_budget = Error"):
+
+        class Wrong(Node):
+            error_budget = 5  # type: ignore[assignment]

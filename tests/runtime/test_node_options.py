@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import pytest
@@ -109,6 +110,13 @@ def test_only_the_node_that_was_meant() -> None:
     assert (twin.name, twin.other.name) == ("given", "twin")
 
 
+@dataclass
+class Data(Node):
+    """A node whose `__init__` is made by Python."""
+
+    word: str = "hello"
+
+
 def test_what_nobody_gives() -> None:
     """The error names the missing argument and the correction; the next node is unaffected."""
     wanted = (
@@ -117,6 +125,7 @@ def test_what_nobody_gives() -> None:
     )
     assert why_not(Needy) == wanted
     assert why_not(Forgot) == "Forgot.__init__ must call super().__init__(...)"
+    assert why_not(Data) == "leave out @dataclass above Data, whose __init__ it replaces; write word = Param(...)"
     assert why_not(Named) == why_not(Talker) == why_not(Node) == ""
     with pytest.raises(DeclarationError, match="needs port and baud"):
         make_within(Needy, NodeOptions("x"), "needy")

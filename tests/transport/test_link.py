@@ -264,7 +264,7 @@ def net(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize(
     ("connect", "text"),
     [
-        ("robot", "robot"),
+        ("robot", "GRAPHFLOW_CONNECT: 'robot' is not an endpoint"),
         ("tcp/127.0.0.1:1 udp/127.0.0.1:2", "udp"),
     ],
 )

@@ -392,6 +392,8 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     if known:
         wanted = agree(wanted, known, full)
     check_kind(wanted, "msg")
+    if options["once"] and options["times"]:
+        raise UsageFault("--once publishes one message, --times N that many: leave one of them out")
     file: Path | None = options.pop("yaml_file")
     from_stdin = options.pop("from_stdin")
     if file is not None and (values or from_stdin):

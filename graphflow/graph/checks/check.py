@@ -221,6 +221,8 @@ def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     for rule in node.remaps:
         if not rule.is_optional and not _fits(rule.match, names, full, interface):
             help_ = did_you_mean(rule.match, full.values())
+            if rule.replacement in (*full, *full.values()):
+                help_ = f"; it is the other way round, from the node's name: {rule.replacement}: {rule.match}"
             yield Problem(
                 rule.place,
                 f"{_class(interface)} has no topic or service {rule.match!r}{help_}"

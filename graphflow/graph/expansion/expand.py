@@ -405,9 +405,9 @@ class Expansion:
                 text = f"{name} is already in the included file; change it under override:"
             else:
                 text = f"there is a step {name!r} already, at {first}; give this one another name"
-        # One place gives a name twice only in a loop.
         elif first == item.at:
-            text = f"every round of the loop has the same {what[:-1]} {name}; put the loop's variable into its name"
+            text = f"this makes the {what[:-1]} {name} more than once: put the loop's variable into its name, or give "
+            text += "each include: of this file a namespace of its own"
         else:
             text = f"there are two {what} {name}; the other is on line {first.line}"
         self._problems.add(item.at, text)

@@ -280,6 +280,9 @@ def number_targets(described: object) -> None:
     Call it before `actions`: an action's number must be known when the action is converted.
     """
     todo, seen = [described], set[int]()
+    is_complete = True
+    targets: list[tuple[RecordedCall, object]] = []
+    """Event handlers, each with the action that it waits for."""
     while todo:
         one = todo.pop()
         if isinstance(one, (list, tuple)):
@@ -288,7 +291,14 @@ def number_targets(described: object) -> None:
         elif isinstance(one, RecordedCall) and id(one) not in seen:  # a description may contain itself
             seen.add(id(one))
             _number(one)
-            todo += reversed(parts(one))
+            is_complete = is_complete and one.kind != "OpaqueFunction"  # which returns further actions
+            target = one.get(HANDLERS[one.kind].target) if one.kind in HANDLERS else None
+            targets += [(one, target)] if isinstance(target, RecordedCall) else []
+            todo += [part for part in reversed(parts(one)) if part is not target]
+    for handler, target in targets if is_complete else ():
+        if isinstance(target, RecordedCall) and id(target) not in seen:
+            text = f"the target of {handler.kind} is in no description, and never starts: name it, as in node = "
+            RECORDING.remark(handler, f"{text}{target.kind}(...), and put node into LaunchDescription([...]), too")
 
 
 def _number(call: RecordedCall) -> None:

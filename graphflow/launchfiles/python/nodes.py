@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 
 import yaml
 
@@ -20,6 +21,8 @@ _OF_CONTAINERS = frozenset(
 _SUBSTITUTIONS = frozenset(NAMES["launch.substitutions"].split())
 _RULE = re.compile(r"((?!__)[\w/.~]+):=(.*)")
 """A parameter or remap of a command line."""
+_JOINED = re.compile(r"-[pr] |--(param|remap|params-file|log-level) ")
+"""A flag that has its value in the same word."""
 _TYPED = {"ParameterValue": 0, "Parameter": 1}
 """Classes that give a parameter a type, with the positions of their values."""
 
@@ -59,9 +62,17 @@ def process(call: RecordedCall) -> dict[str, Data]:
     """Return the attributes of a process that is no node."""
     cmd = call.get("cmd", 0, [])
     if isinstance(cmd, str):
-        RECORDING.problem(call, f"cmd: expected a list of words, such as {cmd.split()!r}, got {cmd!r}")
-        cmd = cmd.split()
+        RECORDING.problem(call, f"cmd: expected a list of words, such as {words_of(cmd)!r}, got {cmd!r}")
+        cmd = words_of(cmd)
     return {**common(call), "cmd": [text(word) for word in cmd]}
+
+
+def words_of(command: str) -> list[str]:
+    """Split a command line as a shell does, or at spaces if its quotes do not match."""
+    try:
+        return shlex.split(command)
+    except ValueError:
+        return command.split()
 
 
 def node(call: RecordedCall) -> dict[str, Data]:
@@ -69,7 +80,7 @@ def node(call: RecordedCall) -> dict[str, Data]:
     found = common(call)
     for position, (key, ours) in enumerate((("package", "pkg"), ("executable", "exec"))):
         # An argument by position, or by its former name, is already reported.
-        value = call.get(key, position, call.get(f"node_{key}"))
+        value = call.get(key, position, call.get(f"node_{key}", default=call.get(ours)))
         if value is not None:
             found[ours] = text(value)
     for key, ours in (("arguments", "args"), ("ros_arguments", "ros_args")):
@@ -87,8 +98,14 @@ def node(call: RecordedCall) -> dict[str, Data]:
 
 
 def _check_words(call: RecordedCall, key: str, words: list[object]) -> None:
-    """Remark on `name:=value` among a program's own arguments, which only those after --ros-args may be."""
-    if key != "arguments" or "--ros-args" in words:
+    """Remark on ROS arguments in the wrong place, or two in one word."""
+    if key == "ros_arguments":
+        for word in words:
+            if isinstance(word, str) and (found := _JOINED.match(word)):
+                flag, rest = found[0].strip(), word[found.end() :]
+                RECORDING.remark(call, f"ros_arguments: {word!r} is one word; write {flag!r}, {rest!r}")
+        return
+    if "--ros-args" in words:
         return
     for word in words:
         if isinstance(word, str) and (rule := _RULE.fullmatch(word)):

@@ -95,6 +95,14 @@ TEXTS: dict[str, str] = {
         "pass a thread's arguments as a tuple: Thread(target=rclpy.spin, args=(node,))"
     ),
     r"type must be an instance of '<enum 'Type'>'": "pass the value by keyword: Parameter('name', value=2.0)",
+    r"parameter \"throttle\w*\" is not one of the recognized logging options": (
+        "seconds between two lines are throttle_duration_sec=1.0"
+    ),
+    r"'(\w+)' is not a valid LoggingSeverity": "write LoggingSeverity.{0}, from rclpy.logging",
+    r"Must pass a builtin_interfaces\.msg\.Time object": "pass a message's stamp: Time.from_msg(msg.header.stamp)",
+    r"of type '(\w+)_ARRAY', expecting type 'BYTE_ARRAY'": (
+        "[] counts as a list of bytes: declare Parameter.Type.{0}_ARRAY in place of it"
+    ),
     r"could not convert string to float: ''": (
         "an empty text is not a number; read a parameter's .value, since .string_value is empty unless it is a string"
     ),
@@ -107,6 +115,7 @@ CALLS = {
         "the name by keyword"
     ),
     "QoSProfile.__init__": "pass policies by keyword: QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)",
+    "Client.call_async": "write call_async(request).add_done_callback(self.done)",
     "RcutilsLogger": "pass one text: get_logger().info(f'... {value}')",
     "Executor.spin": "add the nodes first: executor.add_node(node), and then executor.spin()",
     "Executor.__init__": "add nodes to it: executor.add_node(node)",
@@ -117,6 +126,7 @@ CALLS = {
 """The usage of functions, by name or class, where the signature alone does not explain it."""
 
 GIVEN = {
+    "ActionClient._graphflow_heard_feedback": "feedback_message",
     "Service._do": "request, response",
     "Service._do_async": "request, response",
     "Subscription._do": "message",

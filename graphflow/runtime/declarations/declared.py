@@ -31,6 +31,7 @@ from graphflow.runtime.declarations.declare import (
 )
 from graphflow.runtime.declarations.handlers import MARK, Handler
 from graphflow.runtime.declarations.units import of_a_timer
+from graphflow.runtime.failures import ErrorBudget
 
 
 class NodeClass(Protocol):
@@ -100,12 +101,17 @@ def param_hooks(cls: type) -> dict[str, ParamHook]:
 def hooks(cls: type) -> frozenset[str]:
     """Return the methods called outside any handler: parameter checks, event callbacks and goal decisions."""
     found: set[str] = {name for name, hook in param_hooks(cls).items() if hook.kind == "check"}
-    endpoints = (declared for declared in declarations(cls).values() if isinstance(declared, (Publisher, Subscription)))
-    called: list[object] = [declared.on_event for declared in endpoints]
+    called: list[object] = []
     for handler in handlers(cls).values():
-        called += [handler.on_event]
         called += [handler.action.accept, handler.action.cancellable] if handler.action else []
-    return frozenset(found | {hook.__name__ for hook in called if inspect.isfunction(hook)})
+    return event_hooks(cls) | found | {hook.__name__ for hook in called if inspect.isfunction(hook)}
+
+
+def event_hooks(cls: type) -> frozenset[str]:
+    """Return the methods that are called with the events of endpoints."""
+    endpoints = (declared for declared in declarations(cls).values() if isinstance(declared, (Publisher, Subscription)))
+    called = [item.on_event for item in (*endpoints, *handlers(cls).values())]
+    return frozenset(hook.__name__ for hook in called if inspect.isfunction(hook))
 
 
 _REDEFINED = {"default_group", "error_budget", "node_name", "dynamic_names", "on_start", "on_shutdown", "group"} | {
@@ -116,6 +122,8 @@ _REDEFINED = {"default_group", "error_budget", "node_name", "dynamic_names", "on
     "on_error",
 }
 """Attributes that subclasses may redefine. A running `group` can also be released by its own name."""
+_CLASS_VALUES = {"default_group": (Group, "Group(1)"), "error_budget": (ErrorBudget, "ErrorBudget(20, per=10.0)")}
+"""The types of class attributes that may be None, each with an example."""
 
 
 def reserved(node: type) -> set[str]:
@@ -132,6 +140,10 @@ def check_attributes(cls: type, node: type) -> None:
     Raises:
         DeclarationError: An attribute does.
     """
+    for attribute, (kind, example) in _CLASS_VALUES.items():
+        if not isinstance(getattr(cls, attribute), kind | None):
+            text = f"{attribute} is of the class {kind.__name__}: write {attribute} = {example}"
+            raise DeclarationError(f"{place_of(cls)}: {text}")
     taken = reserved(node)
     found: dict[str, object] = {**declarations(cls), **handlers(cls), **groups(cls)}
     for attribute, value in vars(cls).items():
@@ -274,8 +286,6 @@ def _handler(cls: type[NodeClass], attribute: str, handler: Handler) -> HandlerI
     function = inspect.unwrap(getattr(cls, attribute))
     code = code_of(function)
     place = handler.place if code is None else Place(code.co_filename, code.co_firstlineno)
-    if not isinstance(cls.default_group, Group | None):
-        raise DeclarationError(f"{place_of(cls)}: default_group is a Group: write default_group = Group(1)")
     group = None if handler.kind == "task" else handler.group or cls.default_group
     is_async = inspect.iscoroutinefunction(function)
     return HandlerInfo(attribute, handler.kind, place, group.name if group else "", is_async, handler.thread)

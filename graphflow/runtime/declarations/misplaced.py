@@ -131,7 +131,7 @@ def check_made(node: object) -> None:
 def not_of_node(attribute: str, kind: type[Declaration]) -> str:
     """Return the sentence for a declaration that is assigned to an attribute of a node."""
     way = f"write {attribute} = {kind.__name__}(...) in the body of the class"
-    if not issubclass(kind, Param):
+    if not issubclass(kind, Param) and kind.MAKER.startswith("create_"):
         way += f", or self.{attribute} = self.{kind.MAKER.partition('(')[0]}(...) here"
     return f"self.{attribute} is not a {kind.__name__} of the node; {way}"
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from threading import get_ident
 from time import sleep
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NoReturn, TypeVar
+from weakref import WeakSet
 
 from graphflow.errors import ClosedError, EncodeError, Place
 from graphflow.executor.runner import Runner
@@ -29,6 +32,19 @@ _pack = attachment.LAYOUT.pack
 
 WITH_CONTRADICTIONS = {"geometry_msgs", "nav_msgs", "sensor_msgs", "trajectory_msgs", "visualization_msgs"}
 """The packages with messages whose first ones are checked."""
+
+
+_open: WeakSet[TopicPublisher[Any]] = WeakSet()
+"""The open publishers of this process."""
+
+
+def _refuse_in_child() -> None:
+    for publisher in list(_open):
+        publisher.refuse()
+
+
+if sys.platform != "win32":
+    os.register_at_fork(after_in_child=_refuse_in_child)
 
 
 class _Order:
@@ -114,6 +130,7 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._alive = session.open_sender(alive_key(self._announced()), DEFAULT)
             self._declared.append(self._alive)
         self._shorten()
+        _open.add(self)
         if self.type_name.partition("/")[0] in WITH_CONTRADICTIONS:
             self._check_first()
 
@@ -166,6 +183,15 @@ class TopicPublisher(Endpoint, Generic[M]):
                 order.is_sending = False
 
         self.publish = publish  # type: ignore[method-assign]
+
+    def refuse(self) -> None:
+        """Raise an error at each message, in a child process, in which no thread of the session runs."""
+
+        def publish(_: object) -> NoReturn:
+            text = f"{self.name}: nothing is published in a child process, which has no connection"
+            raise ClosedError(f"{text}; run the work with await self.offload(work), or return its results by a Queue")
+
+        vars(self)["publish"] = vars(self)["put"] = publish
 
     def _lengthen(self) -> None:
         """Restore the general `publish`."""
@@ -386,6 +412,7 @@ class TopicPublisher(Endpoint, Generic[M]):
                 timer.stop()
         self._sender, self._here, self._paused = _NOT_OPEN, (), None
         self._unfollow()
+        _open.discard(self)
         super().close()
 
 

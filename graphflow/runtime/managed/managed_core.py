@@ -181,7 +181,8 @@ class ManagedCore(NodeCore):
         transition = asked(self.state, wanted)
         if transition is None:
             ways = ", ".join(t.label for t in available(self.state)) if self.state.is_primary else ""
-            now = f"{self.full_name} is {self.state.label}; from there: {ways or 'nothing'}"
+            later = "nothing; let the method for this transition return first"
+            now = f"{self.full_name} is {self.state.label}; from there: {ways or later}"
             raise TransitionFailed(f"cannot {_verb(wanted)}: {now}")
         # In a task of its own: the transition may end the caller, or the caller may stop waiting.
         task = super().spawn(self._make, transition)

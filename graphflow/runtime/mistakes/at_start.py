@@ -6,6 +6,29 @@ import logging
 from collections.abc import Sequence
 
 from graphflow.analysis.user_code import is_users_module
+from graphflow.runtime.part import Host
+from graphflow.times import to_ns
+
+ALONE_AFTER = 3.0
+"""Seconds after which the other nodes of a process have started, too."""
+
+
+def warn_of_variables(host: Host, instance: object) -> None:
+    """Log, some seconds after a node's start, the variables of its module that a node of another process sets."""
+    cls: type = type(instance)
+    if not is_users_module(cls.__module__):
+        return
+    from graphflow.runtime.mistakes.source.module_variables import exchanged  # as below
+
+    def check() -> None:
+        present: set[type] = {type(node.instance) for node in host.context.nodes}
+        for found in exchanged(cls):
+            if not any(issubclass(kind, found.setter) for kind in present):
+                host.log.warning("%s", found.text)
+
+    if exchanged(cls):
+        clock = host.context.clock
+        clock.call_at(clock.monotonic_ns() + to_ns(ALONE_AFTER), check)
 
 
 def warn_at_start(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 from typing import Any, TypeAlias
 
 from graphflow.analysis.user_code import short_place, users_frame
@@ -23,6 +24,10 @@ CHECKED = 10
 """The number of messages of a publisher that are checked."""
 _TOLERANCE = 0.1
 """The greatest difference of a quaternion's length from 1: receivers normalize small ones."""
+_BYTES = {"mono8": 1, "8UC1": 1, "mono16": 2, "16UC1": 2, "rgb8": 3, "bgr8": 3, "rgba8": 4, "bgra8": 4, "32FC1": 4}
+"""The bytes of a pixel, by encoding."""
+_SIZES = {3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 8: 8}
+"""The bytes of `PointField.datatype`, for those of more than one."""
 _UNSEEN = 0
 """`Marker.action` of markers that are shown."""
 
@@ -68,6 +73,8 @@ def _cloud(message: Fields) -> str:
     size, count = message.row_step * message.height, len(message.data)
     if size != count:
         return f"data has {count} bytes, and row_step * height is {size}"
+    if any(f.offset + _SIZES.get(f.datatype, 1) * max(f.count, 1) > message.point_step for f in message.fields):
+        return f"fields reach beyond point_step, the {message.point_step} bytes of a point"
     if count and not message.fields:
         return "fields is empty, so that nothing can read data: describe x, y and z with PointField"
     return ""
@@ -77,6 +84,9 @@ def _image(message: Fields) -> str:
     size, count = message.step * message.height, len(message.data)
     if size != count:
         return f"data has {count} bytes, and step * height is {size}; step is the number of bytes in a row"
+    width = message.width * _BYTES.get(message.encoding, 0)
+    if count and message.step < width:
+        return f"step is {message.step}, and a row of {message.width} pixels in {message.encoding} has {width} bytes"
     if count and not message.encoding:
         return "encoding is empty, so that nothing can read data: set it, as in 'rgb8' or 'mono8'"
     return ""
@@ -104,6 +114,8 @@ def _marker(message: Fields) -> str:
         return ""
     if not message.color.a and not len(message.colors) and not message.mesh_resource:
         return "color.a is 0, so that the marker is invisible: set it to 1.0"
+    if max(message.color.r, message.color.g, message.color.b, message.color.a) > 1.0:
+        return "colors go from 0.0 to 1.0, and not to 255"
     if not (message.scale.x or message.scale.y or message.scale.z):
         return "scale is 0, so that the marker is invisible: set its size in metres"
     return _turn(message.pose.orientation)
@@ -127,6 +139,9 @@ def _trajectory(message: Fields) -> str:
     for point in message.points:
         if (count := len(point.positions)) not in (0, names):
             return f"a point has {count} positions, and joint_names has {names}"
+    times = [point.time_from_start.sec + point.time_from_start.nanosec * 1e-9 for point in message.points]
+    if any(after <= before for before, after in pairwise(times)):
+        return "time_from_start of a point is not later than that of the point before"
     return ""
 
 

@@ -25,6 +25,11 @@ def wrong_return(
         return TypeError(_not_awaited(returned, wanted, callback, where))
     if returned is wanted:
         return TypeError(f"it returned the class {name_of(wanted)}: write {name_of(wanted)}(...){where}")
+    if isinstance(returned, BaseException):
+        calls = [call for call in _returned_calls(callback) if last_name(call.func) == type(returned).__name__]
+        code = code_of(callback)
+        line = f" ({code.co_filename}:{calls[0].lineno})" if code is not None and len(calls) == 1 else where
+        return TypeError(f"it returned an exception: write raise {returned!r}{line}")
     return TypeError(f"it returned {returned!r}, not {name_of(wanted)}(...){where}")
 
 

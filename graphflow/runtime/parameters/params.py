@@ -11,6 +11,7 @@ from typing import Any, NamedTuple, NoReturn
 from graphflow.errors import ParameterError
 from graphflow.interface import Parameter
 from graphflow.names import did_you_mean
+from graphflow.runtime.declarations.checks import positional
 from graphflow.runtime.node_arguments import instead_of
 
 
@@ -161,7 +162,15 @@ class Parameters:
         self._checks.append(check)
 
     def observe(self, observer: Observer) -> None:
-        """Call `observer(changes)`, changes by name, after each change, declaration or deletion."""
+        """Call `observer(changes)`, changes by name, after each change, declaration or deletion.
+
+        Raises:
+            TypeError: It takes other arguments.
+        """
+        takes = positional(observer)
+        if takes is not None and not len(takes[0]) <= 1 <= takes[1]:
+            way = "def changed(self, changes): for name, (old, new) in changes.items(): ..."
+            raise TypeError(f"observe calls it with one argument, a dict of changes by name: {way}")
         self._observers.append(observer)
 
     def _notify(self, changes: Mapping[str, ParameterChange]) -> None:

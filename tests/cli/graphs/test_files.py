@@ -178,6 +178,14 @@ def test_the_schema(machine: Machine) -> None:
     assert json.loads(machine.look("schema"))["title"] == "A graph file of graphflow"
 
 
+def test_a_remap_the_wrong_way_round(machine: Machine, tmp_path: Path) -> None:
+    """The suggestion has both names in their order."""
+    file = tmp_path / "g.yaml"
+    file.write_text("nodes: {/talker: {class: nodes.talker:Talker, remap: {/words: chatter}}}\n")
+    text = machine.look("check", str(file), code=2)
+    assert "no topic or service '/words'; it is the other way round, from the node's name: chatter: /words" in text
+
+
 def test_a_wildcard_that_matches_nothing(machine: Machine, tmp_path: Path) -> None:
     """A wildcard rule that matches nothing is a mistake, as any remap rule; one that matches is not."""
     file = tmp_path / "g.yaml"

@@ -105,3 +105,19 @@ def test_parameters_among_a_programs_own_arguments(words: list[str], is_told: bo
     actions([said("Node", package="p", executable="e", arguments=words)])
     text = "arguments: nothing reads 'speed:=2'; write parameters=[{'speed': 2}], or remappings=[('speed', '2')]"
     assert RECORDING.remarks == ([{"line": 7, "message": text}] if is_told else [])
+
+
+def test_two_ros_arguments_in_one_word() -> None:
+    """A remark parts them."""
+    RECORDING.remarks = []
+    actions([said("Node", package="p", executable="e", ros_arguments=["-p speed:=2", "-r", "a:=b"])])
+    text = "ros_arguments: '-p speed:=2' is one word; write '-p', 'speed:=2'"
+    assert RECORDING.remarks == [{"line": 7, "message": text}]
+
+
+def test_a_command_in_one_text(problems: list[Finding]) -> None:
+    """The words are those of a shell."""
+    actions([said("ExecuteProcess", cmd="echo 'it is up'"), said("ExecuteProcess", cmd="echo it's")])
+    shown = [problem["message"].partition(", got")[0] for problem in problems]
+    words = ("['echo', 'it is up']", "['echo', \"it's\"]")
+    assert shown == [f"cmd: expected a list of words, such as {each}" for each in words]

@@ -39,6 +39,7 @@ NUMBERS = [1.0, 2.0, 3.0]
 TICK: Any = TimerInfo.__new__(TimerInfo)
 MAKER: Any = MultiThreadedExecutor
 PROFILE: Any = QoSProfile
+TIME: Any = rclpy.time.Time
 WRONG: list[tuple[Callable[[Any], Any], str]] = [
     # by attribute
     (lambda n: n.get_logger.info("hi"), "get_logger is a method: write get_logger().info(...)"),
@@ -126,6 +127,13 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: ROS.init(["x"]), "write rclpy.init(), or rclpy.init(args=sys.argv)"),
     (lambda n: MAKER.add_node(n), "MultiThreadedExecutor is a class: create an instance, MultiThreadedExecutor()"),
     (lambda n: MAKER.shutdown(), "MultiThreadedExecutor is a class: create an instance, MultiThreadedExecutor()"),
+    (lambda n: n.get_logger().info("a", throttle=1.0), "throttle_duration_sec=1.0"),
+    (lambda n: n.get_logger().set_level("DEBUG"), "write LoggingSeverity.DEBUG, from rclpy.logging"),
+    (lambda n: TIME.from_msg(Twist()), "pass a message's stamp: Time.from_msg(msg.header.stamp)"),
+    (
+        lambda n: n.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(), print),
+        "add_done_callback(self.done)",
+    ),
     # nothing to add
     (lambda n: int("a"), ""),
     (lambda n: OWN(), ""),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import os
 from concurrent.futures import ThreadPoolExecutor
 from random import Random
 from typing import Any
@@ -250,3 +252,19 @@ def _act(
     except Exception as error:
         return f"{type(error).__name__}: {error}"
     return None
+
+
+async def test_a_child_process(graph: Graph) -> None:
+    """A message of a child process would be lost: there its publishers raise an error."""
+    await graph.start(node := Speaker())
+    child = os.fork()
+    if not child:
+        try:
+            node.chatter.publish(String(data="lost"))
+        except ClosedError as error:
+            os._exit(7 * ("nothing is published in a child process" in str(error)))
+        os._exit(1)
+    _, status = await asyncio.to_thread(os.waitpid, child, 0)
+    assert os.waitstatus_to_exitcode(status) == 7
+    node.chatter.publish(String(data="sent"))
+    assert node.chatter.published == 1

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import asyncio
 import logging
 
 import pytest
 
 from graphflow import Node, timer
+from graphflow.runtime.context import Context
 from graphflow.runtime.mistakes.at_start import warn_at_start
+from graphflow.runtime.mistakes.source import module_variables
+from graphflow.runtime.mistakes.source.module_variables import Exchanged
+from graphflow.runtime.node_core import core_of
+from graphflow.testing import Graph
 
 
 class Robot(Node):
@@ -27,6 +33,24 @@ def test_slips_and_shared_lists(caplog: pytest.LogCaptureFixture, is_alone: bool
     slip, *shared = caplog.messages
     assert "did you mean on_start?" in slip
     assert ["`points = []` in the class is one list" in text for text in shared] == [True] * (not is_alone)
+
+
+class Other(Node):
+    """A class whose nodes set a variable."""
+
+
+@pytest.mark.parametrize("is_together", [True, False])
+async def test_variables_of_another_process(
+    graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, is_together: bool
+) -> None:
+    """They are told some seconds after the start, unless a node of the other class is there."""
+    monkeypatch.setattr(module_variables, "exchanged", lambda cls: (Exchanged(Other, "alone"),) if cls is Robot else ())
+    context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
+    for node in (Robot(), Other()) if is_together else (Robot(),):
+        await core_of(node).start(context)
+        graph.nodes.append(node)
+    await graph.clock.advance(5.0)
+    assert caplog.messages.count("alone") == (not is_together)
 
 
 class Odometer(Node):

@@ -46,6 +46,21 @@ def told(message: Any, caplog: pytest.LogCaptureFixture) -> list[str]:
         (Image(height=2, step=6, data=BYTES), "encoding is empty"),
         (PointCloud2(height=1, row_step=8, data=BYTES), "row_step * height is 8"),
         (PointCloud2(height=1, row_step=12, data=BYTES), "fields is empty"),
+        (
+            Image(width=6, height=2, step=6, data=BYTES, encoding="rgb8"),
+            "step is 6, and a row of 6 pixels in rgb8 has 18 bytes",
+        ),
+        (
+            PointCloud2(
+                height=1, row_step=12, point_step=6, data=BYTES, fields=[PointField(name="z", offset=4, datatype=7)]
+            ),
+            "fields reach beyond point_step, the 6 bytes of a point",
+        ),
+        (
+            JointTrajectory(joint_names=["a"], points=[JointTrajectoryPoint(), JointTrajectoryPoint()]),
+            "time_from_start of a point is not later than that of the point before",
+        ),
+        (Marker(scale=CUBE, color=ColorRGBA(r=255.0, a=1.0)), "colors go from 0.0 to 1.0, and not to 255"),
         (JointState(name=["a", "b"], position=[0.0]), "position has 1 values, and name has 2"),
         (BatteryState(percentage=85.0), "percentage goes from 0.0 to 1.0, and is 85"),
         (PoseStamped(pose=FLAT), "the orientation's length is 1.57 and not 1"),
@@ -69,7 +84,7 @@ def test_contradictions(message: Any, text: str, caplog: pytest.LogCaptureFixtur
         LaserScan(ranges=[1.0] * 4, angle_increment=1.5, range_max=3.0),
         OccupancyGrid(info=MapMetaData(width=3, height=3, resolution=0.05), data=[0] * 9),
         Image(height=2, step=6, data=BYTES, encoding="mono8"),
-        PointCloud2(height=1, row_step=12, data=BYTES, fields=[PointField(name="x")]),
+        PointCloud2(height=1, row_step=12, data=BYTES, fields=[PointField(name="x", datatype=7)], point_step=4),
         JointState(name=["a", "b"], position=[0.0, 1.0]),
         BatteryState(percentage=float("nan")),
         Marker(color=RED, scale=CUBE),

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from graphflow import Client, Node, RemoteError, action, service
+from graphflow import Abort, Client, Node, RemoteError, action, service
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.runtime.mistakes.wrong_returns import wrong_return
@@ -106,3 +106,15 @@ def test_actions() -> None:
         "it returned self.counted(goal) without await: write return await self.counted(goal) "
         f"({line_of(Front.count, 2)})"
     )
+
+
+class Refusing(Node):
+    @action(Fibonacci, "fibonacci")
+    async def count(self, goal: Any) -> Any:
+        return Abort("too large")
+
+
+def test_an_error_that_is_returned() -> None:
+    """It is to be raised, in its line."""
+    error = wrong_return(Abort("too large"), Fibonacci.Result, Refusing().count)
+    assert str(error) == f"it returned an exception: write raise Abort('too large') ({line_of(Refusing.count, 2)})"

@@ -131,3 +131,14 @@ def test_an_override_of_a_plain_attribute() -> None:
         "there is no parameter 'speed' (from command line); write speed = Param(2.0)",
         "there is no parameter 'log' (from command line)",
     ]
+
+
+def test_an_observer_of_other_arguments() -> None:
+    """The error has its definition."""
+
+    def changed(name: str, old: object, new: object) -> None:
+        """Be called with the wrong arguments."""
+
+    observer: Any = changed
+    with pytest.raises(TypeError, match=r"observe calls it with one argument, a dict .* def changed\(self, changes\)"):
+        parameters(RATE).observe(observer)

@@ -589,3 +589,26 @@ def test_an_argument_that_is_declared_late(tmp_path: Path) -> None:
     text = "'b' is used here and declared only in line 9, and ROS 2 then has no value for it; "
     assert record(file)["remarks"] == [{"line": 8, "message": f"{text}put its DeclareLaunchArgument before this"}]
     assert record(file, b="3")["remarks"] == []
+
+
+def test_a_target_that_never_starts(tmp_path: Path) -> None:
+    """An action that only an event handler names is in no description."""
+    file = tmp_path / "target.launch.py"
+    text = """
+from launch import LaunchDescription
+from launch.actions import LogInfo, RegisterEventHandler
+from launch.event_handlers import OnProcessStart
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    node = Node(package="p", executable="e")
+    handler = RegisterEventHandler(OnProcessStart(target_action=node, on_start=[LogInfo(msg="up")]))
+    return LaunchDescription([{}handler])
+"""
+    file.write_text(text.format(""))
+    message = (
+        "the target of OnProcessStart is in no description, and never starts: name it, as in node = Node(...), and "
+    )
+    assert [r["message"] for r in record(file)["remarks"]] == [f"{message}put node into LaunchDescription([...]), too"]
+    file.write_text(text.format("node, "))
+    assert record(file)["remarks"] == []

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 import linecache
 import re
 from typing import NamedTuple
 
 from graphflow.analysis.hiding import hidden
-from graphflow.analysis.user_code import place_in
+from graphflow.analysis.user_code import parts_of, place_in
 from graphflow.runtime.mistakes.rclpy_words import EXAMPLES
 from graphflow.runtime.mistakes.source.name_errors import owner_of
 from graphflow.runtime.mistakes.source.text_numbers import text_for_number
@@ -183,7 +184,11 @@ REMARKS = (
         "",
         "the argument of a timer's handler is a TimerInfo: leave it out, and take other values from self or a Param",
     ),
-    Remark(r"unsupported operand .*'Param'", "", "a Param has its value on a node: @timer(hz=rate) reads it there"),
+    Remark(
+        r"unsupported operand .*'Param'",
+        "",
+        "a Param has its value on a node: compute with it in a method, as self.rate, or pass it on: @timer(hz=rate)",
+    ),
 )
 _CALL = re.compile(r"(?:(?P<owner>\w+)\.)?(?P<name>\w+)\(\) (got an unexpected|missing \d|takes )")
 _CLASSES = (TypeError, AttributeError, NameError, UnboundLocalError, RuntimeError, ValueError)
@@ -211,10 +216,18 @@ def _of_kind(error: BaseException, line: str) -> str:
         return way
     if isinstance(error, TypeError) and (way := text_for_number(error, line)):
         return way
+    if re.search(_COROUTINE, str(error)) and not _is_in_coroutine(error):
+        return "that is a coroutine: in a thread write call_sync(...) for call(...); else write async def, and await"
     from graphflow.runtime.mistakes.errors.class_errors import class_in_place  # most programs never need them
     from graphflow.runtime.mistakes.errors.empty_slices import empty_slice
 
     return class_in_place(error) or empty_slice(error, line)
+
+
+def _is_in_coroutine(error: BaseException) -> bool:
+    """Whether a user's `async def` raised an error."""
+    frames = [part.tb_frame for part in parts_of(error.__traceback__)]
+    return not frames or bool(frames[-1].f_code.co_flags & inspect.CO_COROUTINE)
 
 
 def remark_on(error: BaseException) -> str:

@@ -8,15 +8,16 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from typing import NamedTuple
+from typing import NamedTuple, get_args
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.bindings import Bindings, bindings_of
 from graphflow.analysis.syntax import FunctionNode, last_name, walk
 from graphflow.interface import Parameter
-from graphflow.names import nearest
+from graphflow.names import did_you_mean, nearest
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.endpoints.events import QosEventKind
 from graphflow.runtime.mistakes.source.mixed_angles import PoseNames, pose_names
 
 _NUMBERS = {"bool": "a bool", "int": "an int", "float": "a float"}
@@ -44,7 +45,7 @@ def never_equal(cls: type, owner: type, definition: ast.ClassDef, module: ast.Mo
     # A subclass may declare the parameter anew, with other choices.
     params = {k: v.parameter for k, v in declarations.items() if isinstance(v, Param) and own.get(k) is v}
     words = {node.attr for node in ast.walk(definition) if isinstance(node, ast.Attribute)}
-    if words.isdisjoint({*params, "parameters", "status", "lifecycle_state"}):
+    if words.isdisjoint({*params, "parameters", "status", "lifecycle_state", "kind"}):
         return
     bindings = bindings_of(module)
     for found in _comparisons(module, definition):
@@ -137,6 +138,12 @@ def _of_enum(found: _Comparison, cls: type, bindings: Bindings) -> str:
     if not all(isinstance(constant, str) for constant in found.constants):
         return ""
     match found.subject:
+        case ast.Attribute(value=ast.Name(id=name), attr="kind") if _is_event(name, cls, found.parents):
+            kinds = get_args(QosEventKind)
+            listed, shown = " or ".join(map(repr, found.constants)), ast.unparse(found.subject)
+            if not set(found.constants) & {*kinds}:
+                near = did_you_mean(str(found.constants[0]), kinds) or f"; it is one of {', '.join(kinds)}"
+                return f"{shown} is never {listed}{near}"
         case ast.Attribute(value=(ast.Name() | ast.Attribute()) as goal, attr="status"):
             return _never_text(found, "GoalStatus") if _is_goal(goal, bindings, found.parents) else ""
         case ast.Attribute(attr="lifecycle_state") if is_own(found.subject):
@@ -145,6 +152,15 @@ def _of_enum(found: _Comparison, cls: type, bindings: Bindings) -> str:
                 _never_text(found, "LifecycleState") if owner is not None and owner.__name__ == "LifecycleNode" else ""
             )
     return ""
+
+
+def _is_event(name: str, cls: type, parents: Sequence[ast.AST]) -> bool:
+    """Whether a name is the argument of a method that is called with events of an endpoint."""
+    method = next((parent for parent in reversed(parents) if isinstance(parent, FunctionNode)), None)
+    if method is None or len(method.args.args) < 2 or method.args.args[1].arg != name:
+        return False
+    annotation = method.args.args[1].annotation
+    return method.name in declared.event_hooks(cls) or (annotation is not None and last_name(annotation) == "QosEvent")
 
 
 def _never_text(found: _Comparison, enum: str) -> str:

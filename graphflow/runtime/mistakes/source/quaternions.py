@@ -27,6 +27,11 @@ def angles_as_quaternions(code: ast.AST) -> Iterator[tuple[int, str]]:
                 targets=[ast.Attribute(value=ast.Attribute(attr=owner), attr=part) as target], value=value
             ) if owner in _OWNERS and part in _PARTS and _is_angle(value):
                 yield node.lineno, _text(ast.unparse(target), part, value)
+            case ast.keyword(arg="rotation", value=ast.Tuple(elts=parts) | ast.List(elts=parts)) if [
+                ast.unparse(part) for part in parts
+            ] in (["1.0", "0.0", "0.0", "0.0"], ["1", "0", "0", "0"]):
+                text = "a rotation is x, y, z, w, and (1, 0, 0, 0) turns it upside down, by 180 degrees about x"
+                yield node.value.lineno, f"{text}; no turn is (0.0, 0.0, 0.0, 1.0)"
             case ast.Call(func=ast.Name(id="Quaternion") | ast.Attribute(attr="Quaternion"), keywords=given):
                 for keyword in given:
                     if keyword.arg in _PARTS and _is_angle(keyword.value):

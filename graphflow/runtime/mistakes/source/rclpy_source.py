@@ -24,11 +24,13 @@ from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.misplaced import replaced_methods
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
 from graphflow.runtime.mistakes.source.mixed_interfaces import mixed_interfaces
+from graphflow.runtime.mistakes.source.names_in_pairs import names_in_pairs
 from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
 from graphflow.runtime.mistakes.source.never_equal import never_exact
 from graphflow.runtime.mistakes.source.old_parameters import old_parameters
 from graphflow.runtime.mistakes.source.quaternions import angles_as_quaternions
 from graphflow.runtime.mistakes.source.reused_objects import reused_objects
+from graphflow.runtime.mistakes.source.unmanaged_publishers import unmanaged_publishers
 from graphflow.runtime.mistakes.source.wrong_scale import wrong_scale
 
 
@@ -40,7 +42,7 @@ def slips(module: ast.Module) -> list[tuple[int, str]]:
     found += [*contrary_names(module), *literal_units(module), *replaced_methods(module), *early_questions(module)]
     found += [*reused_objects(module), *angles_as_quaternions(module), *busy_loops(module), *after_spin(module)]
     found += [*cancelled_futures(module), *lone_nanoseconds(module), *mixed_interfaces(module)]
-    found += [*old_parameters(module), *wrong_scale(module)]
+    found += [*old_parameters(module), *wrong_scale(module), *names_in_pairs(module), *unmanaged_publishers(module)]
     return found
 
 

@@ -45,7 +45,9 @@ from graphflow.runtime.mistakes.source.never_equal import never_equal, never_exa
 from graphflow.runtime.mistakes.source.overridden import overridden
 from graphflow.runtime.mistakes.source.quaternions import angles_as_quaternions
 from graphflow.runtime.mistakes.source.reused_objects import reused_objects
+from graphflow.runtime.mistakes.source.separate_groups import separate_groups
 from graphflow.runtime.mistakes.source.shadowing import definition_of
+from graphflow.runtime.mistakes.source.uncancelled import uncancelled
 from graphflow.runtime.mistakes.source.unrepeated import unrepeated
 from graphflow.runtime.mistakes.source.wrong_fields import message_of, resolved, wrong_fields
 from graphflow.runtime.mistakes.source.wrong_scale import wrong_scale
@@ -106,6 +108,7 @@ def _slips(cls: type) -> Iterator[str]:
         found = (*found, *literal_units(definition), *misplaced(definition), *without_super(parent, definition))
         found = (*found, *reused_objects(definition), *angles_as_quaternions(definition), *busy_loops(definition))
         found = (*found, *lone_nanoseconds(definition), *unrepeated(parent, definition))
+        found = (*found, *uncancelled(parent, definition), *separate_groups(definition))
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))
         of_file = (*compared_nanoseconds(module), *mixed_angles(module), *constant_conditions(module))

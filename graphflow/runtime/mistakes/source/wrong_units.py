@@ -1,9 +1,10 @@
-"""Parameters given where seconds or Hz are taken although they are declared in another unit: `timeout=self.wait_ms`."""
+"""Parameters in another unit than is taken: `timeout=self.wait_ms`, or degrees for a Twist's `angular.z`."""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, last_name
@@ -16,8 +17,31 @@ _FIRST = {"self.clock.sleep", "self.clock.every", "self.clock.timeout", "self.cr
     *("asyncio.sleep", "asyncio.timeout", "time.sleep", "Duration.of")
 }
 """Calls whose first argument is a time in seconds."""
+_DEGREES = re.compile("deg|\N{DEGREE SIGN}")
 _WAITS = ("call", "send", "send_goal", "wait_ready")
 """Methods of clients with a timeout= in seconds."""
+
+
+def _as_radians(method: ast.AST) -> Iterator[ast.expr]:
+    """Yield the values that are taken for radians: of sines, of a Twist's `angular`, and of keywords for angles."""
+    for node in ast.walk(method):
+        match node:
+            case ast.Call(func=ast.Attribute(attr="sin" | "cos" | "tan"), args=[value]):
+                yield value
+            case ast.keyword(arg="angular", value=ast.Call(keywords=parts)):
+                yield from [part.value for part in parts]
+            case ast.keyword(arg="theta" | "yaw", value=value):
+                yield value
+            case ast.Assign(targets=[ast.Attribute(value=ast.Attribute(attr="angular"))], value=value):
+                yield value
+
+
+def _degrees(definition: ast.ClassDef, params: Mapping[str, Parameter]) -> Iterator[tuple[int, str]]:
+    for value in _as_radians(definition):
+        parameter = params.get(value.attr) if isinstance(value, ast.Attribute) and is_own(value) else None
+        if parameter is not None and _DEGREES.match(parameter.unit.strip().lower()):
+            name = ast.unparse(value)
+            yield value.lineno, f"{name} is in {parameter.unit}, and radians are taken here; write math.radians({name})"
 
 
 def wrong_units(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
@@ -26,6 +50,7 @@ def wrong_units(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]
     params = {
         name: item.parameter for name, item in declarations.items() if isinstance(item, Param) and item.parameter.unit
     }
+    yield from _degrees(definition, params)
     clients = {f"self.{name}" for name, item in declarations.items() if isinstance(item, (Client, ActionClient))}
     calls = [n for m in definition.body if params and isinstance(m, FunctionNode) for n in ast.walk(m)]
     for call in calls:

@@ -6,7 +6,8 @@ import ast
 
 import pytest
 
-from graphflow import LifecycleNode, Node, Param
+from graphflow import LifecycleNode, Node, Param, Publisher
+from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.mistakes.source.never_equal import never_equal, never_exact
 
 BODY = """
@@ -176,3 +177,34 @@ def test_a_place_is_never_exact(line: str, told: str) -> None:
 def test_places_that_may_be_exact(line: str) -> None:
     """Zero, an earlier pose, a velocity as commanded, a test, and a turtle that is teleported are not told."""
     assert never_exact(ast.parse(POSES.format(line))) == ()
+
+
+class Sensor(Node):
+    """A node that is told about the events of its endpoints."""
+
+    def missed(self, event: object) -> None:
+        """Be called with an event."""
+
+    out = Publisher(String, "out", on_event=missed)
+
+
+@pytest.mark.parametrize(
+    ("method", "kind", "told"),
+    [
+        (
+            "def missed(self, event)",
+            "requested_deadline_missed",
+            "event.kind is never 'requested_deadline_missed'; did",
+        ),
+        ("def other(self, event: QosEvent)", "deadline", "event.kind is never 'deadline'; "),
+        ("def missed(self, event)", "deadline_missed", ""),
+        ("def other(self, event)", "requested_deadline_missed", ""),
+    ],
+)
+def test_the_kind_of_an_event(method: str, kind: str, told: str) -> None:
+    """It is one of a few words; other arguments may have a kind of their own."""
+    module = ast.parse(f"class Sensor(Node):\n    {method}:\n        return event.kind == {kind!r}")
+    (definition,) = module.body
+    assert isinstance(definition, ast.ClassDef)
+    found = [text for _, text in never_equal(Sensor, Sensor, definition, module)]
+    assert [text.startswith(told) for text in found] == ([True] if told else [])

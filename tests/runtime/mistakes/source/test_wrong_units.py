@@ -17,6 +17,7 @@ class Robot(Node):
     patience = Param(2.0, unit="s")
     speed = Param(1.0, unit="m/s")
     plain = Param(1.0)
+    turn = Param(30.0, unit="deg/s")
     adder = Client(AddTwoInts, "add")
 
 
@@ -74,3 +75,21 @@ def test_a_parameter_in_another_unit(line: str, told: str) -> None:
 def test_what_is_right_or_unknown(line: str) -> None:
     """Is not told."""
     assert _told(line) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "is_told"),
+    [
+        ("self.cmd.publish(Twist(angular=Vector3(z=self.turn)))", True),
+        ("twist.angular.z = self.turn", True),
+        ("y = math.sin(self.turn)", True),
+        ("self.go(yaw=self.turn)", True),
+        ("twist.angular.z = math.radians(self.turn)", False),
+        ("twist.linear.x = self.turn", False),
+        ("twist.angular.z = self.plain", False),
+    ],
+)
+def test_degrees(line: str, is_told: bool) -> None:
+    """They are told where radians are taken."""
+    way = "self.turn is in deg/s, and radians are taken here; write math.radians(self.turn)"
+    assert [text for _, text in _told(line)] == ([way] if is_told else [])

@@ -138,7 +138,11 @@ class RcutilsLogger:
 
     def set_level(self, level: LoggingSeverity | int) -> None:
         """Log only lines of at least this severity."""
-        self._logger.setLevel(int(LoggingSeverity(level)))
+        try:
+            severity = LoggingSeverity(level)
+        except ValueError as error:
+            raise ValueError(str(error)) from None  # from this line, which users need not see, and not from enum's
+        self._logger.setLevel(int(severity))
         if not self.name:
             RcutilsLogger._has_root_level = True
 

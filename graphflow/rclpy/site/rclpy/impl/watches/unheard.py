@@ -10,10 +10,12 @@ import sys
 import time
 from typing import TYPE_CHECKING
 
+from graphflow.qos import Durability
 from rclpy.impl.nodes import internals_of
 
 if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
+    from graphflow.runtime.endpoints.threaded import ThreadedPublisher
     from rclpy.node import Node
 
 BRIEF = 3.0
@@ -39,3 +41,11 @@ def _tell(node: Node) -> None:
                 "%s: no subscription has received the %d %s: publish when publisher.get_subscription_count() is not 0"
             )
             logger.warning(text, endpoint.name, endpoint.published, many)
+        elif publisher.made_at is not None and endpoint.published and _is_kept_for_nobody(endpoint):
+            text = "%s: %s ends, and with it the message that it keeps for late subscriptions: keep it spinning"
+            logger.warning(text, endpoint.name, node.get_fully_qualified_name())
+
+
+def _is_kept_for_nobody(endpoint: ThreadedPublisher) -> bool:
+    """Whether a publisher keeps messages for late subscriptions, and has had no subscription."""
+    return endpoint.qos.durability is Durability.TRANSIENT_LOCAL and not endpoint.event_total("matched")

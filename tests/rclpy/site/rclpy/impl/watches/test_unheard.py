@@ -8,6 +8,7 @@ from std_msgs.msg import String
 import rclpy
 from rclpy.impl.watches import unheard
 from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
 
 Caplog = pytest.LogCaptureFixture
 
@@ -32,6 +33,18 @@ def test_what_nobody_has_heard(node: Node, caplog: Caplog) -> None:
     publish(Node("other"), times=2)
     rclpy.shutdown()
     assert told(caplog)[1:] == [f"/chat: no subscription has received the 2 messages that were published: {way}"]
+
+
+@pytest.mark.parametrize("is_heard", [True, False])
+def test_what_is_kept_for_late_subscriptions(node: Node, caplog: Caplog, is_heard: bool) -> None:
+    """It goes with the node; nothing is told where a subscription has had it."""
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    if is_heard:
+        Node("ear").create_subscription(String, "chat", print, latched)
+    node.create_publisher(String, "chat", latched).publish(String())
+    node.destroy_node()
+    text = "/chat: /node ends, and with it the message that it keeps for late subscriptions: keep it spinning"
+    assert [told for told in caplog.messages if "keeps" in told] == ([] if is_heard else [text])
 
 
 def test_what_was_heard_or_had_the_time(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
