@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator
 
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, parsed, walk
 from graphflow.analysis.uncalled import uncalled
 
 
@@ -21,7 +21,7 @@ def discarded(source: str, file: str, classes: Collection[str]) -> str:
         Empty if all of them are used, if only to be looked at.
     """
     try:
-        module = ast.parse(source)
+        module = parsed(source)
     except (SyntaxError, ValueError):
         return ""
     has_main = any(isinstance(item, FunctionNode) and item.name == "main" for item in module.body)

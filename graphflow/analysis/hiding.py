@@ -10,6 +10,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import ModuleType
 
+from graphflow.analysis.syntax import parsed
 from graphflow.analysis.user_code import is_installed, is_users
 from graphflow.msgs import registry
 from graphflow.msgs.registry import KINDS
@@ -48,7 +49,7 @@ def hides_what_it_imports(file: Path) -> bool:
     if not name.isidentifier() or not _is_package(name, file):
         return False
     try:
-        module = ast.parse(found_text(file, "replace"))
+        module = parsed(found_text(file, "replace"))
     except (OSError, SyntaxError, ValueError):
         return False  # running the file reports the error
     imported = {alias.name for node in ast.walk(module) if isinstance(node, ast.Import) for alias in node.names}

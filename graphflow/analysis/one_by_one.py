@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import PurePath
 from types import FrameType
 
+from graphflow.analysis.syntax import parsed
 from graphflow.errors import Place
 
 _CALL = re.compile(r"\brun\(")
@@ -33,7 +34,7 @@ def one_by_one(frame: FrameType | None) -> str:
     if _ENDS.search(source) or not (len(_CALL.findall(source)) > 1 or re.search(r"\bfor\b", source)):
         return ""
     try:
-        module = ast.parse(source)
+        module = parsed(source)
     except (SyntaxError, ValueError):
         return ""
     place = Place(PurePath(file).name, line)

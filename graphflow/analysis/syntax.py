@@ -7,6 +7,8 @@ import tokenize
 from collections.abc import Iterator, Sequence
 from functools import cache, cached_property
 
+ATTEMPTS = 5
+"""Times that a source is parsed before its check is given up."""
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 
@@ -109,4 +111,19 @@ def syntax_of(file: str) -> Syntax:
     """
     # It reads the encoding that the file declares, as Python does.
     with tokenize.open(file) as source:
-        return Syntax(ast.parse(source.read()))
+        return Syntax(parsed(source.read()))
+
+
+def parsed(text: str) -> ast.Module:
+    """Parse a source in any thread.
+
+    Raises:
+        SyntaxError, ValueError: It cannot be parsed.
+    """
+    # Python 3.11's parser keeps one counter for all threads, and may fail if two of them parse at once (gh-106905).
+    for _ in range(ATTEMPTS):
+        try:
+            return ast.parse(text)
+        except SystemError as error:
+            reason = error
+    raise ValueError(f"other threads keep Python's parser busy: {reason}")

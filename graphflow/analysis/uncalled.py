@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator, Sequence
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, parsed, walk
 
 _RUNNERS = ("run", "running", "init", "spin")
 """Names of functions by which a program runs nodes."""
@@ -37,7 +37,7 @@ def uncalled(source: str, file: str) -> str:
         Empty if something calls it, or if that is not known.
     """
     try:
-        module = ast.parse(source)
+        module = parsed(source)
     except (SyntaxError, ValueError):
         return ""
     for line, text in misspelt_main(module):

@@ -27,6 +27,7 @@ from types import FrameType
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
+from graphflow.analysis.syntax import parsed
 from graphflow.deadlock.asyncio_frames import TaskLike
 from graphflow.errors import Place
 from graphflow.executor.runner import Run
@@ -229,7 +230,7 @@ def _statements(function: ast.AST) -> Iterator[tuple[ast.AST, tuple[ast.expr, ..
 @cache
 def _function(file: str, line: int) -> ast.AST | None:
     try:
-        module = ast.parse(found_text(Path(file)))
+        module = parsed(found_text(Path(file)))
     except (OSError, SyntaxError, ValueError):
         return None
     for node in ast.walk(module):

@@ -336,7 +336,7 @@ HEAD = "nodes: {a: {class: x:Y}}\n"
             "2:42: parameter 'rate=2.0' has no value; write rate: 2",
         ),
         ("for: {var: i, in: x}", "2:19: in: expected a list or a span such as 1..10, got 'x'"),
-        ("for: {var: i, in: [1, 2], nodes: {b: {class: x:Y}}}", "2:35: every round of the loop has the same node /b;"),
+        ("for: {var: i, in: [1, 2], nodes: {b: {class: x:Y}}}", "2:35: this makes the node /b more than once:"),
         ("for: {var: i, in: [1, 2], nodes: {$(var j): {class: x:Y}}}", "2:35: there is no argument 'j'; there is i"),
         ("for: {var: i, in: [{n: 1}], nodes: {b$(var i.m): {class: x:Y}}}", "2:37: $(var i.m): 'i' has no 'm'"),
         (
