@@ -52,8 +52,8 @@ def own() -> set[str]:
 
 def foreign(file: Path) -> set[str]:
     """The packages that a file imports which neither Python nor graphflow has."""
-    tree = ast.parse(file.read_text(encoding="utf-8"))
-    named = {found.module.partition(".")[0] for found in imports(tree, ".".join(file.relative_to(PROJECT).parts[:-1]))}
+    text, package = file.read_text(encoding="utf-8"), ".".join(file.relative_to(PROJECT).parts[:-1])
+    named = {found.module.partition(".")[0] for found in imports(ast.parse(text), package, text)}
     return named - sys.stdlib_module_names - own() - {"__main__"}
 
 
