@@ -80,6 +80,23 @@ def _only_one_of_type(own: Entity, names: Iterable[str]) -> str:
     return f"nobody publishes {own.name} [{own.type}]; the only topic of this type is {only[0]!r}"
 
 
+def of_other_kind(own: Entity, named: Iterable[Entity]) -> str:
+    """Return a message that a topic's name is that of a service, or the reverse.
+
+    Args:
+        named: The endpoints of that name, of any kind.
+    """
+    is_topic = own.kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION)
+    if any(other.kind is COUNTERPARTS[own.kind] for other in named):
+        return ""
+    for other in named:
+        if is_topic and other.kind is Kind.SERVICE:
+            return f"{own.name} is a service of {other.node_name} and not a topic: call it with a client"
+        if own.kind is Kind.CLIENT and other.kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION):
+            return f"{own.name} is a topic of {other.node_name} and not a service: use a publisher or a subscription"
+    return ""
+
+
 def _is_of_one_node(entity: Entity, other: Entity) -> bool:
     return (entity.zid, entity.nid) == (other.zid, other.nid)
 

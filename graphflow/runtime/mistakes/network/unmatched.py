@@ -15,7 +15,7 @@ from graphflow.deadlock.protocols import ProcessContext
 from graphflow.executor.clock import Alarm
 from graphflow.machines.cache import ACTION_SEND_GOAL, GraphChange
 from graphflow.machines.matching import COUNTERPARTS
-from graphflow.machines.near_topics import by_type, did_you_mean_topic, is_everybodys
+from graphflow.machines.near_topics import by_type, did_you_mean_topic, is_everybodys, of_other_kind
 from graphflow.names import is_hidden
 from graphflow.qos import Durability
 from graphflow.runtime.mistakes.network.other_domains import look_elsewhere
@@ -111,7 +111,8 @@ class Unmatched:
         there = by_type(self._here.cache, {own.type for own, _ in due})
         for own, waiting in due:
             waiting.due_ns = None
-            if text := did_you_mean_topic(own, there):
+            text = of_other_kind(own, self._here.cache.named(own.name)) or did_you_mean_topic(own, there)
+            if text:
                 self._forget(own)
                 self._reported.add((own.node_name, own.kind, own.name))
                 waiting.log.warning("%s", text)

@@ -191,3 +191,18 @@ async def test_another_domain_is_none_of_its_business(graph: Graph, caplog: Capl
         await graph.start(Node("other"), Circle())
         await graph.clock.advance(60.0)
     assert caplog.messages == []
+
+
+async def test_a_service_taken_for_a_topic(graph: Graph, caplog: Caplog) -> None:
+    """And a topic for a service: the name is right, and the kind is not."""
+    server, user = Node("server"), Node("user")
+    server.create_service(AddTwoInts, "add", lambda request: AddTwoInts.Response())
+    server.create_publisher(Twist, "speed", 10)
+    user.create_publisher(Twist, "add", 10)
+    user.create_client(AddTwoInts, "speed")
+    await graph.start(server, user)
+    await graph.clock.advance(WARN_AFTER + 0.1)
+    assert [text for text in caplog.messages if "and not a" in text] == [
+        "/add is a service of /server and not a topic: call it with a client",
+        "/speed is a topic of /server and not a service: use a publisher or a subscription",
+    ]
