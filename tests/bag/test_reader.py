@@ -16,6 +16,7 @@ from graphflow.bag.formats.mcap_file import McapFile
 from graphflow.bag.reader import Bag
 from graphflow.errors import BagError
 from tests.bag.cast import CHATTER, COUNT, START, some_records, write
+from tests.cases import slow
 
 
 @pytest.fixture(params=[StoragePlugin.MCAP, StoragePlugin.SQLITE3])
@@ -113,6 +114,7 @@ def test_a_folder_without_metadata(tmp_path: Path) -> None:
     assert bag.contents.message_count == 41
 
 
+@slow
 def test_many_files_are_not_open_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only those that overlap in time."""
     bag = Bag(write(tmp_path / "bag", max_seconds=0.05))

@@ -14,6 +14,7 @@ from graphflow.qos import CLOCK
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.testing import Graph
 from graphflow.times import NANOSECONDS, Time, to_ns
+from tests.cases import slow
 from tests.runtime.cast import Log
 
 
@@ -93,6 +94,7 @@ async def test_a_jump_back_delays_nobody(graph: Graph) -> None:
     assert node.clock.now() == Time(to_ns(5.7))
 
 
+@slow
 async def test_sleeps_and_deadlines_follow(graph: Graph) -> None:
     """`clock.sleep`, `clock.timeout`, the deadline of a call and that of a topic count simulated seconds."""
     node, server = simulated(), Node("server")

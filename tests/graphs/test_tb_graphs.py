@@ -44,6 +44,7 @@ async def test_it_drives_and_touches_nothing(graph: Graph, world: str, style: st
     assert max(abs(a.x - b.x) + abs(a.y - b.y) for a in places for b in places) > 1.0
 
 
+@slow
 async def test_driven_by_hand(graph: Graph) -> None:
     """A velocity drives the robot for as long as commands come, and it stops by itself."""
     nodes = await graph.up(PROJECT / "graphs" / "tb_teleop.yaml")

@@ -42,6 +42,7 @@ def host(machine: Machine, programs: list[Program]) -> Program | None:
 ORDERS = itertools.permutations([TALKER, LISTENER, CIRCLE])
 
 
+@slow
 @pytest.mark.parametrize("order", [pytest.param(order, marks=slow if i else ()) for i, order in enumerate(ORDERS)])
 def test_terminals_in_any_order_see_each_other(machine: Machine, order: tuple[tuple[str, ...], ...]) -> None:
     """No router, no multicast, no waiting: the listener hears the talker and a look shows all three."""

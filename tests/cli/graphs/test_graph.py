@@ -26,6 +26,7 @@ def test_in_the_terminal(standing: Machine) -> None:
     assert "/rosout" in standing.look("graph", "--all")
 
 
+@slow
 def test_a_part(standing: Machine) -> None:
     """Of one namespace."""
     text = standing.look("graph", "office")

@@ -20,6 +20,7 @@ def written(file: Path) -> Path:
     return write_map(GridMap(cells, 0.5, (-1.0, 0.0, 0.0)), file)[0]
 
 
+@slow
 def test_shown_and_saved(machine: Machine, tmp_path: Path) -> None:
     """A map that is served is drawn, and saved again as it was."""
     file = written(tmp_path / "house")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -92,6 +93,7 @@ ZOO = """\
 from graphflow import Abort, Node, action, service
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_srvs.srv import SetBool
+from tests.cases import slow
 
 
 class Zoo(Node):
@@ -115,6 +117,7 @@ class Zoo(Node):
 """
 
 
+@slow
 def test_what_the_server_logs(machine: Machine, tmp_path: Path) -> None:
     """A response without a reason, and a goal's end, come with the problems that the server has logged meanwhile."""
     (tmp_path / "zoo.py").write_text(ZOO)

@@ -12,6 +12,7 @@ from tests.conftest import Machine
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_static_transforms(machine: Machine) -> None:
     """One process publishes a transform, and others show it."""
     static = machine.start("tf", "static", "map", "odom", "--x", "1", "--y", "-2", "--yaw", "1.5708")

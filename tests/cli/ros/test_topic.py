@@ -11,6 +11,7 @@ from graphflow.cli.ros.topic import _incompatibilities
 from graphflow.machines.cache import GraphCache
 from graphflow.qos import Durability, Qos
 from graphflow.wire.liveliness import Entity, Kind
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
@@ -97,6 +98,7 @@ def test_echo_that_nobody_answers(standing: Machine) -> None:
     assert text.startswith("WARNING: topic [/silence] does not appear to be published yet\n")
 
 
+@slow
 def test_echo_of_a_topic_that_has_only_subscribers(machine: Machine) -> None:
     """The warning names them: they may be why one looks there."""
     machine.start("run", "listener")

@@ -19,10 +19,10 @@ from graphflow.testing import Graph
 class Robot(Node):
     """A node with a slip, and a list of its class."""
 
-    points: list[int] = []  # noqa: RUF012
+    crumbs_on_the_way: list[int] = []  # noqa: RUF012
 
     def on_strat(self) -> None:
-        self.points.append(1)
+        self.crumbs_on_the_way.append(1)
 
 
 @pytest.mark.parametrize("is_alone", [True, False])
@@ -32,7 +32,7 @@ def test_slips_and_shared_lists(caplog: pytest.LogCaptureFixture, is_alone: bool
     warn_at_start(logging.getLogger("test"), robot, [] if is_alone else [("/other", other)])
     slip, *shared = caplog.messages
     assert "did you mean on_start?" in slip
-    assert ["`points = []` in the class is one list" in text for text in shared] == [True] * (not is_alone)
+    assert ["`crumbs_on_the_way = []` in the class is one list" in text for text in shared] == [True] * (not is_alone)
 
 
 class Other(Node):

@@ -9,6 +9,7 @@ import pytest
 from graphflow.errors import GraphFileError
 from graphflow.supervisor.launching import launch_python
 from graphflow.supervisor.launching.launch_python import described
+from tests.cases import slow
 
 
 def test_what_it_describes(tmp_path: Path) -> None:
@@ -23,6 +24,7 @@ def test_what_it_describes(tmp_path: Path) -> None:
     assert told["actions"] == [{"node": {"line": 4, "pkg": "a", "exec": "b"}}]
 
 
+@slow
 def test_what_it_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """It is shown to whoever starts it, and to nobody else."""
     file = tmp_path / "a.launch.py"

@@ -207,6 +207,7 @@ def test_an_executable_of_a_package_is_a_node(machine: Machine, project: Path, s
     assert os.name == "nt" or log.read_text().count("the light goes out") == 1  # the other one was killed
 
 
+@slow
 def test_a_program_that_cannot_be_started(machine: Machine, project: Path) -> None:
     """It is a mistake in the file, found before anything is started."""
     text = machine.run("up", write(project, "nodes: {/p: {command: [no-such-program]}}"), cwd=project, code=2)

@@ -67,6 +67,7 @@ class Leaving(Node):
 """
 
 
+@slow
 def test_a_worker_that_ends_leaves_nothing(machine: Machine, project: Path) -> None:
     """Even before the preload process has noticed, and so whatever is killed then."""
     (project / "nodes" / "leaving.py").write_text(LEAVING)

@@ -28,6 +28,7 @@ from tests.conftest import Machine
 from tests.supervisor.running import rows, write
 
 
+@slow
 @pytest.mark.real
 def test_an_error_in_a_task_ends_the_node_with_its_traceback(machine: Machine, project: Path) -> None:
     """When all nodes have ended the graph has, with code 1 if one failed."""
@@ -41,6 +42,7 @@ def test_an_error_in_a_task_ends_the_node_with_its_traceback(machine: Machine, p
     assert "lab.py" in up.text
 
 
+@slow
 @pytest.mark.real
 def test_nodes_that_share_a_process_share_its_pid_and_its_end(machine: Machine, project: Path) -> None:
     """A crash ends the mates; nodes elsewhere go on."""

@@ -73,6 +73,7 @@ async def test_more_keys_than_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
         assert [each.key for each in queue if isinstance(each, events.Key)] == ["b", "c"]
 
 
+@slow
 async def test_a_console_that_is_slow() -> None:
     """However long its turns take, a dialog gets the keys that are typed for it."""
 

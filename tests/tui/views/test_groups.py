@@ -102,6 +102,7 @@ async def test_a_deadlock_is_seen_ended_and_written(graph: Graph, tmp_path: Path
         await s.until("get_group limit 1 □")
 
 
+@slow
 async def test_nothing_to_do() -> None:
     """Without a deadlock the keys say so."""
     async with stage(Content("groups")) as s:

@@ -56,6 +56,7 @@ async def test_a_report_in_a_narrow_pane(width: int, begins: int) -> None:
         assert at[1] - at[0] == (8 if width == 120 else 4)
 
 
+@slow
 async def test_levels_and_filter() -> None:
     """1 to 5 choose the level; / filters by a regular expression while it is typed, and marks matches."""
     async with stage(Content("log"), records=RECORDS) as s:

@@ -9,11 +9,13 @@ import pytest
 from graphflow.tui.panes import Content
 from graphflow.tui.views import source
 from graphflow.tui.views.source import find_file
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_the_line_is_marked_and_on_screen(tmp_path: Path) -> None:
     """The line is marked and visible wherever it is; control characters have no effect."""
     file = tmp_path / "long.py"
@@ -36,6 +38,7 @@ async def test_the_lines_before_it_are_on_screen(tmp_path: Path) -> None:
         assert "x203 = 203" in s.text
 
 
+@slow
 async def test_escape_closes_it(tmp_path: Path) -> None:
     """Escape returns to the pane that opened it."""
     (tmp_path / "a.py").write_text("x = 1\n")

@@ -52,6 +52,7 @@ async def test_what_is_wrong_with_the_graph() -> None:
         assert "E1 ^b e ⇄1 RACE ^b g" in s.text.split("\n")[-1]
 
 
+@slow
 async def test_a_click_on_a_window_opens_it() -> None:
     """Windows can be chosen by mouse."""
     async with stage(Content("log"), Content("nodes")) as s:

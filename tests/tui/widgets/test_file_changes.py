@@ -9,6 +9,7 @@ import pytest
 from graphflow.tui.panes import Content
 from graphflow.tui.widgets import file_changes
 from graphflow.tui.widgets.dialogs import Ask
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -50,6 +51,7 @@ async def test_what_would_be_no_graph_file_is_not_written(change: str, why: str,
         assert [f.name for f in file.parent.iterdir()] == ["lab.yaml"]
 
 
+@slow
 async def test_a_full_disk_leaves_the_old_file(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The old file stays, and the error is shown."""
 

@@ -7,6 +7,7 @@ import pytest
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views.nodes.tree import Tree
+from tests.cases import slow
 from tests.tui.nodes import Listener, Talker
 from tests.tui.stage import stage
 
@@ -76,6 +77,7 @@ async def test_what_is_opened(graph: Graph, name: str, opened: str) -> None:
         await s.until(opened)
 
 
+@slow
 async def test_from_the_list_of_nodes(graph: Graph) -> None:
     """x opens the tree."""
     await graph.start(Talker())

@@ -26,6 +26,7 @@ from graphflow.qos import LATCHED
 from graphflow.testing import Graph
 from graphflow.tf import Transform, Transforms
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.stage import Stage, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -101,6 +102,7 @@ async def test_a_goal_that_no_node_takes(graph: Graph) -> None:
         await s.until("no node subscribes to /goal_pose; graphflow run goal_driver -p frame:=map")
 
 
+@slow
 async def test_a_goal_is_set(graph: Graph) -> None:
     """By `g`, arrow keys and Enter, or a click; it is sent as rviz sends it, and drawn. Escape gives up."""
     robot = Robot()

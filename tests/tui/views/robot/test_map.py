@@ -37,6 +37,7 @@ class Robot(Node):
         )
 
 
+@slow
 async def test_a_robot_is_drawn(graph: Graph) -> None:
     """Its scan is around it, and its place in the title; a simulation that begins again starts a new drawing."""
     robot = Robot()

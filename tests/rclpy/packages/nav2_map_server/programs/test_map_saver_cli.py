@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from graphflow.maps import GridMap, read_map, write_map
+from tests.cases import slow
 from tests.conftest import Machine
 
 pytestmark = pytest.mark.real
 
 
+@slow
 def test_a_map_is_saved(machine: Machine, tmp_path: Path) -> None:
     """It is written as it was served; a wrong threshold is refused."""
     file = write_map(GridMap(np.zeros((4, 6), np.int8), 0.5), tmp_path / "house")[0]
