@@ -8,17 +8,23 @@ Parameters, topics and rules are those of ROS 2's package of that name.
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterable
 
 import graphflow
-from graphflow import GraphFileError, Node, Param, ParameterError, Publisher, Time, subscription
+from graphflow import GraphFileError, Node, Param, ParameterError, Publisher, Time, subscription, task
 from graphflow.description import Joint, parse, read_robot
 from graphflow.msgs.sensor_msgs.msg import JointState
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.names import did_you_mean
 from graphflow.qos import LATCHED, SENSOR_DATA
 from graphflow.tf import Transform, Transforms
+
+PATIENCE = 5.0
+"""Seconds for the first message on `joint_states`."""
+SLACK = 0.1
+"""Metres or radians by which a joint may be beyond its limits."""
 
 
 class RobotStatePublisher(Node):
@@ -60,6 +66,15 @@ class RobotStatePublisher(Node):
         before = self.frame_prefix
         return [Transform(before + j.parent, before + j.child, j.pose(position), stamp) for j, position in joints]
 
+    @task
+    async def look_for_joints(self) -> None:
+        """Tell after a while which frames are missing, since nobody publishes `joint_states`."""
+        await self.clock.sleep(PATIENCE)
+        moving = [joint.child for joint in self.robot.joints.values() if joint.moves]
+        if moving and not self.published:
+            text = "no joint_states yet, so %s is not sent: start what publishes them, such as joint_state_publisher"
+            self.log.warning(text, ", ".join(moving[:3]))
+
     @robot_description.check
     def is_a_description(self, text: str) -> None:
         try:
@@ -97,6 +112,14 @@ class RobotStatePublisher(Node):
             name = next(iter(positions))
             hint = did_you_mean(name, self.robot.joints)
             self.log.warning("joint_states has none of the robot's joints: it has no joint %r%s", name, hint)
+        if not stamp.nanoseconds and not self.ignore_timestamp:
+            self.log.warning("joint_states has no stamp, and is left out: set header.stamp", throttle=5.0)
+            return
+        for joint in (self.robot.joints[name] for name in own):
+            low, high = joint.limits or (-math.inf, math.inf)
+            if not low - SLACK <= positions[joint.name] <= high + SLACK:
+                limits = f"{low:g} to {high:g} {'metres' if joint.kind == 'prismatic' else 'radians'}"
+                self.log.warning("%s is at %g, beyond %s", joint.name, positions[joint.name], limits, throttle=5.0)
         least = min((self.published.get(name, 0) for name in own), default=now)
         period = 1e9 / self.publish_frequency if self.publish_frequency else 0.0
         if stamp.nanoseconds < least + period and not self.ignore_timestamp:

@@ -28,7 +28,7 @@ from graphflow.analysis.syntax import FunctionNode, last_name, walk
 from graphflow.errors import Place
 from graphflow.graph.checks.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
-from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, HandlerInfo, Interface
+from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, HandlerInfo, Interface, may_make
 from graphflow.machines.regrouping import Regrouping
 from graphflow.reading import found_text
 
@@ -129,10 +129,13 @@ class _CallGraph:
         self._servers: dict[str, _Actor | None] = {}
         """By service or action: its server; None if there are several, any of which may answer."""
         self._unresolved: list[Finding] = []
+        self._dynamic: list[bool | Sequence[str]] = []
+        """By node: the names that it may make at run time."""
 
     def add(self, node: PlannedNode, interface: Interface) -> None:
         """Add the handlers of a node, with their calls."""
         self._regroupings[node.name] = node.regrouping(self._file)
+        self._dynamic.append(interface.dynamic_names)
         names, source = resolver(node), _Source(interface)
         clients = {e.attribute: names.resolve(e.name, "service") for e in interface.endpoints if "client" in e.kind}
         replies = {e.attribute: _group(node, interface, e.group) for e in interface.endpoints if e.group}
@@ -158,13 +161,17 @@ class _CallGraph:
         """Add the server of a name."""
         self._servers[name] = actor if self._servers.get(name, actor) == actor else None
 
+    def _may_be_made(self, name: str) -> bool:
+        """Whether a node of the graph makes servers of such names at run time."""
+        return any(may_make(dynamic, name) for dynamic in self._dynamic)
+
     def unresolved(self) -> list[Finding]:
         """Return the calls that could not be followed."""
         missing = [
             Finding("unresolved", call.place, f"{actor} calls {call.name}, which no node of this graph declares")
             for actor, calls in self._calls.items()
             for call in calls
-            if call.name not in self._servers
+            if call.name not in self._servers and not self._may_be_made(call.name)
         ]
         return [*self._unresolved, *missing]
 

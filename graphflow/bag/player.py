@@ -153,6 +153,11 @@ class Player:
                 text = f"{name} is of type {topic.type}, and {goes} of type {taken}; give it another name with -m"
                 raise BagError(f"{self._bag.path}: {text}")
 
+    @property
+    def unheard(self) -> list[str]:
+        """The topics, as they are played, that have had no subscription."""
+        return sorted(p.name for p in self._publishers.values() if p.published and not p.event_total("matched"))
+
     def _chosen(self) -> Iterator[tuple[str, Topic]]:
         for name, topic in self._bag.contents.topics.items():
             choice = self._options.choice

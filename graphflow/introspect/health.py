@@ -130,7 +130,7 @@ def _echoes(cache: GraphCache, then: Counts, now: Counts, seconds: float) -> Ite
         if min(rate, published) >= ECHO:
             yield (
                 f"{entity.node_name} receives its own messages on {entity.name}, {rate:.0f} per second: remap "
-                "one of the two, or subscribe with ignore_local=True"
+                "one of the two, or ignore them: a native node with ignore_local=True, one of rclpy in its callback"
             )
 
 
@@ -251,7 +251,9 @@ def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:
     ):
         offered = {e.name for e in cache.endpoints(there) if not is_hidden(e.name)}
         for name in sorted({e.name for e in cache.endpoints(here)} - offered):
-            who = sorted({e.node_name for e in cache.endpoints(here, name) if not is_hidden(e.node_name)})
+            # A private name of a node is for others, who may come later.
+            users = [e for e in cache.endpoints(here, name) if not name.startswith(f"{e.node_name}/")]
+            who = sorted({e.node_name for e in users if not is_hidden(e.node_name)})
             if not who or is_hidden(name) or name in EVERYBODYS:
                 continue
             text = f"{' and '.join(who)} {verbs[len(who) > 1]} {name}, which no node {provides}"

@@ -226,6 +226,8 @@ def _where_to_have(module: str, workspace: Workspace, wanted: str = "") -> str:
         return f"{name}.py is in the package {owner.name}; write: from {owner.name}.{module} import ..."
     if name in ("rospy", "roscpp", "roslib"):
         return f"{name} is ROS 1's: in ROS 2 a program imports rclpy, and has a class that derives from rclpy.node.Node"
+    if name in _INSTEAD:
+        return f"there is no {name} here: {_INSTEAD[name]}"
     if name in _ON_PYPI:
         return f"there is no {name} here: pip install {_ON_PYPI[name]}"
     near = nearest(name, [*workspace.packages, *registry.packages()], cutoff=SLIP)
@@ -280,6 +282,10 @@ def _has_module(package: Package, name: str) -> bool:
     return any((package.folder / part / f"{name}.py").is_file() for part in (package.name, f"src/{package.name}"))
 
 
+_INSTEAD = {
+    "rosbag2_py": "graphflow.bag.read(...) yields the messages of a bag, and `graphflow bag` has ros2 bag's verbs",
+}
+"""Replacements of packages that graphflow does not have."""
 _ON_PYPI = {
     "serial": "pyserial",
     "cv2": "opencv-python",

@@ -14,7 +14,7 @@ from graphflow.times import NANOSECONDS, to_ns
 
 TIMELESS = (
     "it uses simulated time (use_sim_time), but there is no message on /clock: its timers stand still. Start the "
-    "simulator, or play a bag with --clock, or set use_sim_time to false"
+    "simulator, or let it go on if it is paused, or play a bag with --clock, or set use_sim_time to false"
 )
 WARN_AFTER = 3.0
 """Seconds that simulated time has to start before a warning."""

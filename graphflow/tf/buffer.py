@@ -367,10 +367,10 @@ class TransformBuffer(AttributeHints):
             elif before is not None and sender is not None:
                 places = (before, self._sender(sender.gid)), (parent, self._sender(gid))
                 self._reports.two_parents(frame, *places)
-        elif sender is not None and gid in sender.former:
+        elif sender is not None and sender.parent == parent and (gid, parent) in sender.former:
             self._reports.two_senders(frame, parent, *sorted([self._sender(sender.gid), self._sender(gid)]))
-        former = frozenset() if sender is None else frozenset({*sender.former, sender.gid})
-        self._senders[frame] = Sender(gid, former=former if len(former) < 10 else frozenset())
+        former = frozenset() if sender is None else frozenset({*sender.former, (sender.gid, sender.parent)})
+        self._senders[frame] = Sender(gid, parent, former if len(former) < 10 else frozenset())
 
     def _sender(self, gid: bytes) -> str:
         return self._name_of(gid) or "a node that has ended"

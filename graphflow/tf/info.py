@@ -37,11 +37,13 @@ class Sender:
     Attributes:
         received_ns: When its latest transform arrived, by the node's clock.
         count, delays_ns, longest_ns: The number of its transforms, and the sum and the longest of their delays.
-        former: The GIDs of those before it.
+        parent: The parent that it gives the frame.
+        former: The GIDs of those before it, each with its parent.
     """
 
     gid: bytes
-    former: frozenset[bytes] = frozenset()
+    parent: str = ""
+    former: frozenset[tuple[bytes, str]] = frozenset()
     received_ns: int = 0
     count: int = 0
     delays_ns: int = 0

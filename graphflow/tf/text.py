@@ -9,6 +9,9 @@ from graphflow.tf.info import FrameInfo
 from graphflow.tf.poses import AXES, rotate, to_rpy
 from graphflow.tf.transform import Transform
 
+YEARS = 1e8
+"""Seconds beyond which an age is that of a simulated time, seen by the wall clock."""
+
 
 def described(transform: Transform) -> str:
     """Format a transform as lines, as tf2_echo does."""
@@ -69,7 +72,8 @@ def remark(info: FrameInfo, age: float) -> str:
     if info.is_static:
         return f"static, {sender}"
     rate = f"{info.rate:.1f} Hz, " if info.rate else ""
-    return f"{rate}{age:.2f} s old, {sender}"
+    when = f"{age:.2f} s old" if abs(age) < YEARS else f"at {info.newest.seconds:.2f} s"
+    return f"{rate}{when}, {sender}"
 
 
 def monitored(infos: Sequence[FrameInfo], chain: Sequence[str], delays: Sequence[float]) -> str:

@@ -110,6 +110,10 @@ class Alone(Base):
         await self.ask()
 
 
+class Dynamic(Alone):
+    dynamic_names = ("/mine",)
+
+
 class LetsGo(Base):
     @timer(1.0, group=Base.all)
     async def tick(self):
@@ -142,6 +146,7 @@ class PushesOut(Node):
         ("Beside", None),
         ("LetsGo", None),
         ("PushesOut", None),
+        ("Dynamic", None),
         ("Computed", "static_cases.py:46: unresolved: timer tick of /n calls self.late, which is made at run time"),
         ("Alone", "static_cases.py:11: unresolved: timer tick of /n calls /mine, which no node of this graph declares"),
     ],

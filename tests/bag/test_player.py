@@ -33,9 +33,9 @@ class Show:
         self.player: Player
         self.began = 0
 
-    async def begin(self, **options: Any) -> Player:
+    async def begin(self, *, listens: bool = True, **options: Any) -> Player:
         await self.graph.start(self.node, self.listener)
-        for topic in self.bag.contents.topics.values():
+        for topic in self.bag.contents.topics.values() if listens else ():
             self.listen(topic)
         self.player = Player(self.node, self.bag, PlayOptions(**options))
         await self.graph.settle()
@@ -65,6 +65,16 @@ async def test_all_of_it_in_its_time(graph: Graph, tmp_path: Path) -> None:
     assert [(topic, data) for _, topic, data in show.heard] == [(r.topic.name, r.data) for r in expected]
     assert [at for at, _, _ in show.heard] == [pytest.approx((r.log_ns - START) / 1e9) for r in expected]
     assert player.played == 41
+    assert player.unheard == []
+
+
+async def test_topics_that_nobody_hears(graph: Graph, tmp_path: Path) -> None:
+    """They are named, as they are played."""
+    show = Show(graph, tmp_path / "bag")
+    player = await show.begin(listens=False)
+    await graph.clock.advance(3.0)
+    await show.task
+    assert player.unheard == sorted({record.topic.name for record in some_records()})
 
 
 @pytest.mark.parametrize("rate", [0.5, 4.0])

@@ -161,6 +161,7 @@ def test_where_nobody_speaks() -> None:
         entity_token("/sim", kind=PUB, name="/scan1"),
         entity_token("/goto", kind=CLIENT, name="/spwan"),
         entity_token("/sim", kind=SERVICE, name="/spawn"),
+        entity_token("/sim", kind=SUB, name="/sim/set"),
     )
     told = found(seen, [], [])
     assert told.faults == [

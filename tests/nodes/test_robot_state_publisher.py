@@ -122,3 +122,16 @@ async def test_joints_of_another_name(graph: Graph, caplog: pytest.LogCaptureFix
         await graph.settle()
     text = "joint_states has none of the robot's joints: it has no joint 'turn_joint'; there is fix, grip, turn"
     assert [told for told in caplog.messages if "joint_states" in told] == [text]
+
+
+async def test_joints_that_are_not_sent(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """The frames that wait are told, and then states without a stamp and positions beyond the limits."""
+    await graph.start(RobotStatePublisher(robot_description=ROBOT))
+    await graph.clock.advance(6.0)
+    assert "no joint_states yet, so arm, finger is not sent: start what publishes them" in caplog.text
+    joints = graph.publisher(JointState, "/joint_states")
+    joints.publish(JointState(name=["turn"], position=[0.1]))
+    joints.publish(state(1.0, grip=90.0))
+    await graph.settle()
+    assert "joint_states has no stamp, and is left out: set header.stamp" in caplog.text
+    assert "grip is at 90, beyond 0 to 9 metres" in caplog.text

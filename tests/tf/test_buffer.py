@@ -361,3 +361,17 @@ async def test_a_moving_frame_as_static(graph: Graph, caplog: pytest.LogCaptureF
     for x in (3.0, 4.0, 5.0):
         node.tf.send_static(Transform.of("odom", "base_link", (x, 0.0, 0.0)))
     assert caplog.text.count("odom -> base_link is sent as static with another pose each time") == 1
+
+
+async def test_two_parents_by_turns(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
+    """Two publishers that place a frame in two others are not told to publish the same."""
+    listener, first, second = Listener(), Listener("first"), Listener("second")
+    await graph.start(listener, first, second)
+    for _ in range(3):
+        first.tf.send(Transform.of("map", "base"))
+        await graph.clock.advance(0.1)
+        second.tf.send(Transform.of("odom", "base"))
+        await graph.clock.advance(0.1)
+    ours = [record.getMessage() for record in caplog.records if "listener" in record.name]
+    assert any(text.startswith("base is placed in ") and "a frame has one parent" in text for text in ours)
+    assert not any("both publish" in text for text in ours)

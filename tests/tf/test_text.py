@@ -42,6 +42,7 @@ def test_trees() -> None:
 def test_remarks() -> None:
     """Rate, age and publisher are named where there are any."""
     assert remark(ODOM, 0.021) == "30.0 Hz, 0.02 s old, by /slam"
+    assert remark(ODOM, 1.7e9) == f"30.0 Hz, at {ODOM.newest.seconds:.2f} s, by /slam"
     assert remark(LASER, 5.0) == "static, its publisher has ended"
 
 

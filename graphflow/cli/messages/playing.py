@@ -33,6 +33,8 @@ from graphflow.wire.liveliness import Kind
 
 R = TypeVar("R")
 
+NAMED = 3
+"""Topics without subscriptions that are named."""
 STAY = 0.2
 """Seconds that the publishers stay after the last message, so that it is delivered."""
 SHOWN_EVERY = 0.2
@@ -95,6 +97,9 @@ async def _play(node: Node, bag: Bag, options: PlayOptions, burst: int | None, *
                 shown.cancel()
             output.progress("")
             output.talk(f"played {player.played:,} messages in {time.monotonic() - began:.1f} s")
+            if unheard := player.unheard:
+                more = f" and {len(unheard) - NAMED} more" if len(unheard) > NAMED else ""
+                output.talk(f"note: no node has subscribed to {', '.join(unheard[:NAMED])}{more}")
     return exits.OK
 
 

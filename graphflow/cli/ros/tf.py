@@ -20,7 +20,7 @@ from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.tf import Transform, TransformBuffer
 from graphflow.tf.text import described, monitored, remark, tree
-from graphflow.times import Time, to_ns
+from graphflow.times import NANOSECONDS, Time, to_ns
 from graphflow.wire.liveliness import Kind
 
 F = TypeVar("F", bound=Callable[..., object])
@@ -63,7 +63,9 @@ def tree_(seconds: float, as_json: bool) -> None:
         if as_json:
             output.as_json([{**asdict(info), "newest": info.newest.seconds} for info in infos])
         elif infos:
-            remarks = {info.frame: remark(info, (now - info.newest).seconds) for info in infos}
+            # Nanoseconds: one of the two times may be simulated.
+            ages = {info.frame: (now.nanoseconds - info.newest.nanoseconds) / NANOSECONDS for info in infos}
+            remarks = {info.frame: remark(info, ages[info.frame]) for info in infos}
             output.lines(tree({info.frame: info.parent for info in infos}, remarks))
         else:
             output.talk(nothing_here(f"no transforms in {seconds:g} s"))

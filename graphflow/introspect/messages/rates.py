@@ -10,6 +10,9 @@ import statistics
 from collections import deque
 from typing import NamedTuple
 
+SIMULATED = 1e8
+"""Seconds of delay, three years, beyond which a stamp and the clock are of different kinds."""
+
 
 class Spread(NamedTuple):
     """Mean, extremes and standard deviation of some numbers."""
@@ -94,7 +97,8 @@ class Delays:
         spread = self.spread()
         if spread is None:
             return ""
-        return f"average delay: {spread.mean:.3f}\n\t{_spread(spread)}"
+        odd = "; the stamps seem to be of simulated time" if abs(spread.mean) > SIMULATED else ""
+        return f"average delay: {spread.mean:.3f}{odd}\n\t{_spread(spread)}"
 
 
 class Weights:

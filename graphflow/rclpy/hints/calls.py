@@ -31,6 +31,8 @@ def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
         return ""
     if " must return its response, " in str(error):
         return "set the fields of response, and return response"
+    if " must return TransitionCallbackReturn" in str(error):
+        return ""  # it says all
     miscalled = _MISCALLED.match(str(error))
     users = own(frames)
     if last.f_code.co_name == "checked" and users and miscalled is not None:

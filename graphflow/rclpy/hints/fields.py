@@ -15,6 +15,8 @@ from graphflow.rclpy.messages.classes import StrictMessage
 
 _FIELD = re.compile(r"The '(\w+)' field must be (?:a sub message )?of type '(\w+)'")
 _ELEMENTS = re.compile(r" (?:set|sequence).* of type '(int|float|str|bool)'")
+_OF_TIMES = ("to_sec", "to_nsec", "secs", "nsecs", "nanoseconds", "seconds")
+"""Attributes of rclpy's times, and of ROS 1's."""
 _PLAIN = (bool, int, float, str)
 _RECKONED = re.compile(r"operand|can only concatenate|not supported between|argument must be|required, not")
 _RANGE_OR_LIST = re.compile(r"The '\w+' field must be (an? |string value)")
@@ -24,6 +26,10 @@ def missing_field(error: BaseException, frames: list[FrameType]) -> str:
     """List the fields of a message that lacks the requested one."""
     absent = lacking(error, frames)
     if absent is not None and isinstance(absent[0], StrictMessage):
+        kind = type(absent[0]).__name__
+        if kind in ("Time", "Duration") and absent[1] in _OF_TIMES:
+            way = f"{kind}.from_msg(...).nanoseconds / 1e9, with {kind} from rclpy.{kind.lower()}"
+            return f"it is a message; write {way}"
         return _fields(type(absent[0]), absent[1])
     found = re.match(r"Invalid arguments passed to constructor: (\w+)", str(error))
     made = [frame.f_locals["SELF"] for frame in frames if "SELF" in frame.f_locals]
@@ -87,6 +93,9 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
         return _of_array(target, given, kind, shape)
     if kind == "float" and isinstance(value, int):
         return f"{target} is a float: write {value}.0" if given == str(value) else f"write {target} = float({given})"
+    if kind == "int" and isinstance(value, float) and name == "sec":
+        nanoseconds = round(value % 1 * 1e9)
+        return f"the fraction has a field of its own: write sec={int(value)}, nanosec={nanoseconds:_}"
     if kind == "int" and isinstance(value, float):
         return f"{target} is an int: write int(...){' or //' if '/' in given else ''}"
     is_made = kind == "str" or (kind in ("int", "float") and isinstance(value, str))
@@ -115,6 +124,8 @@ def _wrong_element(checks: list[dict[str, Any]], text: str) -> str:
         if dimensions := getattr(last["item"], "ndim", 0):
             flat = "tobytes()" if last["item"].dtype.itemsize == 1 else "ravel().tolist()"
             return f"the array has {dimensions + 1} dimensions, and the field one: write array.{flat}"
+        if kind is not None and type(last["item"]).__name__ == kind[1]:
+            return f"one of its elements is {reprlib.repr(last['item'])}, which is out of range"
         way = f": write [{kind[1]}(v) for v in ...]" if kind is not None and isinstance(last["item"], _PLAIN) else ""
         return f"one of its elements is {reprlib.repr(last['item'])}{way}"
     value = last["value"]

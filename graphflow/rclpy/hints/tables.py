@@ -51,6 +51,13 @@ TEXTS: dict[str, str] = {
         "it was already destroyed, by itself or with its node: use it earlier, and call destroy_node() last"
     ),
     r"Context\.init\(\) must only be called once": "call rclpy.init() once, before the first node is created",
+    r"property 'value' of 'Parameter' object has no setter": (
+        "a Parameter is a copy; the node's own is set by set_parameters([Parameter('name', value=...)])"
+    ),
+    r"invalid transition from state \w+ with event": "the goal has ended already: return its result right after that",
+    r"Unrecognized image encoding \[(?:bgr|rgb|mono|bgra|rgba|gray|grey)\]": (
+        "the bits of a channel belong to it, as in bgr8 or mono8"
+    ),
     r"property '(\w+)' of '\w+' object has no setter|(handle) cannot be modified": (
         "every node has '{0}' already: choose another name for the attribute"
     ),

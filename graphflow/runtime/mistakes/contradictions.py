@@ -7,12 +7,14 @@ of a publisher are checked: a program fills in all of its messages in the same w
 from __future__ import annotations
 
 import math
+import re
 import sys
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import Any, TypeAlias
 
 from graphflow.analysis.user_code import short_place, users_frame
+from graphflow.names import did_you_mean
 from graphflow.runtime.part import Host
 
 Fields: TypeAlias = Any
@@ -26,8 +28,18 @@ _TOLERANCE = 0.1
 """The greatest difference of a quaternion's length from 1: receivers normalize small ones."""
 _BYTES = {"mono8": 1, "8UC1": 1, "mono16": 2, "16UC1": 2, "rgb8": 3, "bgr8": 3, "rgba8": 4, "bgra8": 4, "32FC1": 4}
 """The bytes of a pixel, by encoding."""
+_ENCODINGS = re.compile(
+    r"(mono|rgb|bgr|rgba|bgra)(8|16)|(8|16)[US]C\d*|32SC\d*|(32|64)FC\d*|bayer_(rggb|bggr|gbrg|grbg)(8|16)|"
+    r"yuv422(_yuy2)?|uyvy|yuyv|nv\d\d"
+)
+"""The encodings of sensor_msgs/image_encodings.hpp."""
+_POLE = 90.0
 _SIZES = {3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 8: 8}
 """The bytes of `PointField.datatype`, for those of more than one."""
+_TURNS = 10.0
+"""Radians beyond which an angle of a scanner counts as degrees."""
+_SLACK = 0.05
+"""The part by which the number of ranges may differ from the angles, since some drivers round them."""
 _UNSEEN = 0
 """`Marker.action` of markers that are shown."""
 
@@ -42,6 +54,7 @@ class FirstMessages:
     def __init__(self, host: Host, type_name: str, name: str) -> None:
         self._host, self._name = host, name
         self._check = _CHECKS.get(type_name)
+        self._needs_frame = type_name in _PLACED
         self._left = CHECKED if self._check is not None else 0
 
     @property
@@ -53,7 +66,9 @@ class FirstMessages:
         """Warn of a contradiction in a message."""
         self._left -= 1
         try:
-            text = self._check(message) if self._check is not None else ""
+            text = (self._check(message) if self._check is not None else "") or _frame(
+                message, is_needed=self._needs_frame
+            )
         except (AttributeError, TypeError, ValueError):
             return  # a field of a wrong type, which is an error of its own when the message is encoded
         if text:
@@ -61,6 +76,23 @@ class FirstMessages:
             caller = users_frame(sys._getframe(1))
             place = f"{short_place(caller.f_code.co_filename, caller.f_lineno)}: " if caller is not None else ""
             self._host.log.warning("%s%s: %s", place, self._name, text)
+
+
+def _frame(message: Fields, *, is_needed: bool) -> str:
+    """Return a sentence about the frame in a message's header."""
+    frame = message.header.frame_id if hasattr(message, "header") else None
+    if frame is not None and frame.startswith("/"):
+        return f"frames have no slash in front: write header.frame_id = {frame.lstrip('/')!r}"
+    if frame == "" and is_needed and _has_content(message):
+        return "header.frame_id is empty, so that nothing can place it: set it, as in 'base_scan' or 'map'"
+    return ""
+
+
+def _has_content(message: Fields) -> bool:
+    """Whether a message has data, or is a marker to be shown."""
+    return (
+        bool(len(getattr(message, "ranges", getattr(message, "data", ())))) or getattr(message, "action", 1) == _UNSEEN
+    )
 
 
 def _battery(message: Fields) -> str:
@@ -84,11 +116,11 @@ def _image(message: Fields) -> str:
     size, count = message.step * message.height, len(message.data)
     if size != count:
         return f"data has {count} bytes, and step * height is {size}; step is the number of bytes in a row"
+    if count and not _ENCODINGS.fullmatch(message.encoding):
+        return f"there is no encoding {message.encoding!r}{did_you_mean(message.encoding, _BYTES)}"
     width = message.width * _BYTES.get(message.encoding, 0)
     if count and message.step < width:
         return f"step is {message.step}, and a row of {message.width} pixels in {message.encoding} has {width} bytes"
-    if count and not message.encoding:
-        return "encoding is empty, so that nothing can read data: set it, as in 'rgb8' or 'mono8'"
     return ""
 
 
@@ -106,6 +138,20 @@ def _map(message: Fields) -> str:
         return f"data has {count} cells, and info.width * info.height is {cells}"
     if count and not message.info.resolution > 0:
         return "info.resolution is 0: set the metres per cell"
+    if count and max(message.data) == 1:
+        return "its greatest cell is 1, which is free: occupied cells are 100, free ones 0 and unknown ones -1"
+    return ""
+
+
+def _compressed(message: Fields) -> str:
+    if len(message.data) and not message.format:
+        return "format is empty: it is 'jpeg' or 'png', and data has the bytes of such a file; pixels go into an Image"
+    return ""
+
+
+def _fix(message: Fields) -> str:
+    if abs(message.latitude) > _POLE:
+        return f"latitude goes from -90 to 90, and is {message.latitude:g}"
     return ""
 
 
@@ -122,11 +168,20 @@ def _marker(message: Fields) -> str:
 
 
 def _markers(message: Fields) -> str:
+    shown = [(m.ns, m.id) for m in message.markers if m.action == _UNSEEN]
+    if len(set(shown)) < len(shown):
+        return "two markers have the same ns and id, and the second replaces the first: number them by id"
     return next(filter(None, map(_marker, message.markers)), "")
 
 
 def _scan(message: Fields) -> str:
     count = len(message.ranges)
+    if max(abs(message.angle_min), abs(message.angle_max)) > _TURNS:
+        return f"angle_min and angle_max are in radians, and are {message.angle_min:g} and {message.angle_max:g}"
+    if message.angle_increment and message.angle_max > message.angle_min:
+        told = (message.angle_max - message.angle_min) / message.angle_increment
+        if count and abs(told - count) > _SLACK * count + 2:
+            return f"ranges has {count} values, and the angles and angle_increment are those of {told + 1:.0f}"
     if count > 1 and not message.angle_increment:
         return f"angle_increment is 0, so that all {count} ranges are in one direction: set it in radians"
     if count and not message.range_max > message.range_min:
@@ -161,15 +216,24 @@ _CHECKS: dict[str, Check] = {
     "nav_msgs/msg/Odometry": lambda m: _turn(m.pose.pose.orientation),
     "nav_msgs/msg/Path": lambda m: _first(_turn(p.pose.orientation) for p in m.poses),
     "sensor_msgs/msg/BatteryState": _battery,
+    "sensor_msgs/msg/CompressedImage": _compressed,
     "sensor_msgs/msg/Image": _image,
     "sensor_msgs/msg/JointState": _joints,
     "sensor_msgs/msg/LaserScan": _scan,
+    "sensor_msgs/msg/NavSatFix": _fix,
     "sensor_msgs/msg/PointCloud2": _cloud,
     "trajectory_msgs/msg/JointTrajectory": _trajectory,
     "visualization_msgs/msg/Marker": _marker,
     "visualization_msgs/msg/MarkerArray": _markers,
 }
 """The check of each type, which returns a sentence, or ""."""
+_PLACED = {
+    "nav_msgs/msg/OccupancyGrid",
+    "sensor_msgs/msg/LaserScan",
+    "sensor_msgs/msg/PointCloud2",
+    "visualization_msgs/msg/Marker",
+}
+"""The types whose messages are of no use without a frame."""
 
 
 def _first(texts: Iterable[str]) -> str:

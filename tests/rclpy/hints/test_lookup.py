@@ -134,6 +134,9 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
         lambda n: n.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(), print),
         "add_done_callback(self.done)",
     ),
+    (lambda n: TIME(seconds=1).to_msg().to_sec(), "it is a message; write Time.from_msg(...).nanoseconds / 1e9"),
+    (lambda n: setattr(TIME(seconds=1).to_msg(), "sec", 0.5), "write sec=0, nanosec=500_000_000"),
+    (lambda n: setattr(n.declare_parameter("m", 1), "value", 2), "a Parameter is a copy; the node's own is set by"),
     # nothing to add
     (lambda n: int("a"), ""),
     (lambda n: OWN(), ""),

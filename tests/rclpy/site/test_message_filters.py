@@ -126,3 +126,10 @@ def test_messages_without_a_stamp_are_told_now_and_then(caplog: pytest.LogCaptur
     for _ in range(5):
         source.signalMessage(Int32())
     assert len(told(caplog, "a message without a stamp is dropped")) <= 1
+
+
+def test_a_subscriber_without_a_node() -> None:
+    """The error has the order of its arguments."""
+    wrong: Any = Subscriber
+    with pytest.raises(TypeError, match=r"Subscriber takes the node first: Subscriber\(self, LaserScan, 'scan'\)"):
+        wrong("scan", PointStamped)

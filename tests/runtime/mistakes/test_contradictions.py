@@ -10,14 +10,24 @@ import pytest
 
 from graphflow.msgs.geometry_msgs.msg import Pose, PoseStamped, Quaternion, Vector3
 from graphflow.msgs.nav_msgs.msg import MapMetaData, OccupancyGrid, Path
-from graphflow.msgs.sensor_msgs.msg import BatteryState, Image, JointState, LaserScan, PointCloud2, PointField
-from graphflow.msgs.std_msgs.msg import ColorRGBA, String
+from graphflow.msgs.sensor_msgs.msg import (
+    BatteryState,
+    CompressedImage,
+    Image,
+    JointState,
+    LaserScan,
+    NavSatFix,
+    PointCloud2,
+    PointField,
+)
+from graphflow.msgs.std_msgs.msg import ColorRGBA, Header, String
 from graphflow.msgs.trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from graphflow.msgs.visualization_msgs.msg import Marker, MarkerArray
 from graphflow.runtime.mistakes.contradictions import CHECKED, FirstMessages
 
 BYTES = np.zeros(12, np.uint8)
 FLAT = Pose(orientation=Quaternion(z=1.57, w=0.0))
+PLACED = Header(frame_id="map")
 RED, CUBE = ColorRGBA(r=1.0, a=1.0), Vector3(x=0.1, y=0.1, z=0.1)
 
 
@@ -43,7 +53,7 @@ def told(message: Any, caplog: pytest.LogCaptureFixture) -> list[str]:
         (OccupancyGrid(info=MapMetaData(width=3, height=3), data=[0] * 8), "info.width * info.height is 9"),
         (OccupancyGrid(info=MapMetaData(width=3, height=3), data=[0] * 9), "info.resolution is 0"),
         (Image(height=2, step=5, data=BYTES, encoding="rgb8"), "data has 12 bytes, and step * height is 10"),
-        (Image(height=2, step=6, data=BYTES), "encoding is empty"),
+        (Image(height=2, step=6, data=BYTES), "there is no encoding ''"),
         (PointCloud2(height=1, row_step=8, data=BYTES), "row_step * height is 8"),
         (PointCloud2(height=1, row_step=12, data=BYTES), "fields is empty"),
         (
@@ -62,6 +72,18 @@ def told(message: Any, caplog: pytest.LogCaptureFixture) -> list[str]:
         ),
         (Marker(scale=CUBE, color=ColorRGBA(r=255.0, a=1.0)), "colors go from 0.0 to 1.0, and not to 255"),
         (JointState(name=["a", "b"], position=[0.0]), "position has 1 values, and name has 2"),
+        (LaserScan(ranges=[1.0] * 360, angle_min=-180.0, angle_max=179.0, angle_increment=1.0), "are in radians"),
+        (
+            LaserScan(ranges=[1.0] * 180, angle_max=6.26, angle_increment=0.01744, range_max=3.0),
+            "ranges has 180 values, and the angles and angle_increment are those of 360",
+        ),
+        (LaserScan(ranges=[1.0] * 4, angle_increment=1.5, range_max=3.0), "header.frame_id is empty"),
+        (Marker(header=Header(frame_id="/map"), color=RED, scale=CUBE), "write header.frame_id = 'map'"),
+        (Image(height=2, step=6, data=BYTES, encoding="RGB8"), "there is no encoding 'RGB8'; did you mean 'rgb8'?"),
+        (OccupancyGrid(info=MapMetaData(width=3, height=1, resolution=0.1), data=[0, 1, 0]), "occupied cells are 100"),
+        (CompressedImage(data=BYTES), "format is empty: it is 'jpeg' or 'png'"),
+        (NavSatFix(latitude=126.9, longitude=37.5), "latitude goes from -90 to 90, and is 126.9"),
+        (MarkerArray(markers=[Marker(color=RED, scale=CUBE)] * 2), "two markers have the same ns and id"),
         (BatteryState(percentage=85.0), "percentage goes from 0.0 to 1.0, and is 85"),
         (PoseStamped(pose=FLAT), "the orientation's length is 1.57 and not 1"),
         (Path(poses=[PoseStamped(), PoseStamped(pose=FLAT)]), "write z = math.sin(yaw / 2), w = math.cos(yaw / 2)"),
@@ -81,13 +103,18 @@ def test_contradictions(message: Any, text: str, caplog: pytest.LogCaptureFixtur
     "message",
     [
         *(LaserScan(), OccupancyGrid(), Image(), PointCloud2(), JointState(), BatteryState(), Path(), String()),
-        LaserScan(ranges=[1.0] * 4, angle_increment=1.5, range_max=3.0),
-        OccupancyGrid(info=MapMetaData(width=3, height=3, resolution=0.05), data=[0] * 9),
+        LaserScan(header=PLACED, ranges=[1.0] * 4, angle_increment=1.5, angle_max=4.5, range_max=3.0),
+        OccupancyGrid(header=PLACED, info=MapMetaData(width=3, height=3, resolution=0.05), data=[0] * 9),
         Image(height=2, step=6, data=BYTES, encoding="mono8"),
-        PointCloud2(height=1, row_step=12, data=BYTES, fields=[PointField(name="x", datatype=7)], point_step=4),
+        PointCloud2(
+            header=PLACED, height=1, row_step=12, data=BYTES, fields=[PointField(name="x", datatype=7)], point_step=4
+        ),
         JointState(name=["a", "b"], position=[0.0, 1.0]),
         BatteryState(percentage=float("nan")),
-        Marker(color=RED, scale=CUBE),
+        Marker(header=PLACED, color=RED, scale=CUBE),
+        CompressedImage(format="jpeg", data=BYTES),
+        NavSatFix(latitude=37.5, longitude=127.0),
+        MarkerArray(markers=[Marker(id=i, color=RED, scale=CUBE) for i in range(2)]),
         Marker(action=Marker.DELETEALL),
     ],
     ids=lambda value: type(value).__name__,

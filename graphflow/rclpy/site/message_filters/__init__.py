@@ -51,6 +51,8 @@ class Subscriber(SimpleFilter):
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__()
+        if len(args) < 3 or not hasattr(args[0], "create_subscription"):
+            raise TypeError("Subscriber takes the node first: Subscriber(self, LaserScan, 'scan')")
         self.node, self.topic = args[0], args[2]
         kwargs.setdefault("qos_profile", 10)
         self.sub = self.node.create_subscription(*args[1:], self.callback, **kwargs)

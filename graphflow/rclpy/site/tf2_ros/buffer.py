@@ -124,6 +124,8 @@ class Buffer(BufferCore, BufferInterface):
         return answer if return_debug_tuple else answer[0]
 
     def _graphflow_wait(self, can: Callable[[], tuple[bool, str]], timeout: Duration) -> tuple[bool, str]:
+        if not hasattr(timeout, "nanoseconds"):
+            raise TypeError(f"timeout takes a Duration, not {timeout!r}: write timeout=Duration(seconds={timeout!r})")
         until = clocks.monotonic() + timeout.nanoseconds / 1e9
         with self._graphflow_changed:
             while True:

@@ -101,6 +101,11 @@ REMARKS = (
         "",
         "write a time span as Duration.of(0.5); its .seconds is a number",
     ),
+    Remark(
+        "^'Transform' object has no attribute '(transform|header|child_frame_id)'",
+        "",
+        "a lookup returns the transform itself: .translation, .rotation, .yaw; .to_msg() makes the message",
+    ),
     Remark("^'Time' object has no attribute 'to_msg'", "", "leave it out: a Time can be put into a message"),
     Remark("Clock' object has no attribute 'create_rate'", "", "write async for n in self.clock.every(hz=10.0):"),
     Remark("Clock' object has no attribute '(time|get_time)'", "", "write self.clock.now()"),

@@ -20,6 +20,7 @@ from graphflow.runtime.mistakes.source.ineffective import ineffective
 from graphflow.runtime.mistakes.source.literal_units import literal_units
 from graphflow.runtime.mistakes.source.lone_nanoseconds import lone_nanoseconds
 from graphflow.runtime.mistakes.source.lost_values import lost_values
+from graphflow.runtime.mistakes.source.message_values import message_values, subscribed
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.misplaced import replaced_methods
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
@@ -41,6 +42,7 @@ def slips(module: ast.Module) -> list[tuple[int, str]]:
     found += [*constant_conditions(module), *defined_twice(module), *lost_values(module), *never_exact(module)]
     found += [*contrary_names(module), *literal_units(module), *replaced_methods(module), *early_questions(module)]
     found += [*reused_objects(module), *angles_as_quaternions(module), *busy_loops(module), *after_spin(module)]
+    found += [*message_values(module, subscribed(module))]
     found += [*cancelled_futures(module), *lone_nanoseconds(module), *mixed_interfaces(module)]
     found += [*old_parameters(module), *wrong_scale(module), *names_in_pairs(module), *unmanaged_publishers(module)]
     return found

@@ -27,6 +27,7 @@ from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.mistakes.source.added_arrays import added_arrays
 from graphflow.runtime.mistakes.source.busy_loops import busy_loops
 from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.conditions import constant_conditions
@@ -37,6 +38,7 @@ from graphflow.runtime.mistakes.source.literal_units import literal_units
 from graphflow.runtime.mistakes.source.lone_nanoseconds import lone_nanoseconds
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.lost_values import lost_values
+from graphflow.runtime.mistakes.source.message_values import message_values
 from graphflow.runtime.mistakes.source.misgiven import misgiven
 from graphflow.runtime.mistakes.source.misplaced import misplaced, without_super
 from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
@@ -108,6 +110,8 @@ def _slips(cls: type) -> Iterator[str]:
         found = (*found, *literal_units(definition), *misplaced(definition), *without_super(parent, definition))
         found = (*found, *reused_objects(definition), *angles_as_quaternions(definition), *busy_loops(definition))
         found = (*found, *lone_nanoseconds(definition), *unrepeated(parent, definition))
+        heard = [name for name, handler in declared.handlers(parent).items() if handler.kind == "subscription"]
+        found = (*found, *message_values(definition, heard), *added_arrays(definition))
         found = (*found, *uncancelled(parent, definition), *separate_groups(definition))
         module = syntax_of(file).module
         found = (*found, *never_equal(cls, parent, definition, module))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 from tf2_msgs.srv import FrameGraph
@@ -84,3 +85,10 @@ def test_it_answers_which_frames_there_are(node: Node) -> None:
     answer = future.result()
     assert answer is not None
     assert "base: " in answer.frame_yaml
+
+
+def test_a_number_in_place_of_a_duration() -> None:
+    """Its error has the duration."""
+    seconds: Any = 1.0
+    with pytest.raises(TypeError, match=r"takes a Duration, not 1.0: write timeout=Duration\(seconds=1.0\)"):
+        Buffer().lookup_transform("map", "base", Time(), seconds)
