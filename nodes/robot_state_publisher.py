@@ -51,6 +51,8 @@ class RobotStatePublisher(Node):
         self.published: dict[str, int] = {}
         self.heard = 0
         self.has_warned = False
+        for remark in self.robot.remarks:
+            self.log.warning("%s", remark)
         self.begin()
         self.log.info("robot %s: %d links, %d joints", self.robot.name, len(self.robot.links), len(self.robot.joints))
 

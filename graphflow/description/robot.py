@@ -92,11 +92,16 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """A robot's name, its links and the joints between them, by name."""
+    """A robot's name, its links and the joints between them, by name.
+
+    Attributes:
+        remarks: Sentences on what its description probably does not mean, each with its place.
+    """
 
     name: str
     links: dict[str, Link]
     joints: dict[str, Joint]
+    remarks: tuple[str, ...] = ()
 
     @property
     def root(self) -> str:

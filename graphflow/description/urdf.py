@@ -21,6 +21,9 @@ DEPTH_BOUND = 100
 ELEMENTS_BOUND = 100_000
 Colour = tuple[float, float, float, float]
 
+TURNS, FAR = 10.0, 50.0
+"""Radians and metres of an origin beyond which they are probably degrees and millimetres."""
+
 
 @dataclass(slots=True)
 class _Element:
@@ -90,6 +93,7 @@ class _Reader:
 
     def __init__(self) -> None:
         self._problems: list[Problem] = []
+        self._remarks: list[str] = []
         self._materials: dict[str, Colour] = {}
 
     def _fault(self, element: _Element, text: str) -> None:
@@ -111,7 +115,7 @@ class _Reader:
             self._check_tree(top, links, joints, places)
         if self._problems:
             raise GraphFileError(self._problems)
-        return Robot(top.attributes.get("name", ""), links, joints)
+        return Robot(top.attributes.get("name", ""), links, joints, tuple(self._remarks))
 
     def _check_tag(self, child: _Element) -> None:
         meant = nearest(child.tag, TOP) if child.tag not in TOP and ":" not in child.tag else None
@@ -279,6 +283,12 @@ class _Reader:
     def _origin(self, element: _Element) -> Pose:
         origin = element.first("origin")
         place, turn = (self._numbers(origin, key, (0.0, 0.0, 0.0)) for key in ("xyz", "rpy"))
+        far, turned = max(place, key=abs), max(turn, key=abs)
+        if origin is not None and abs(turned) > TURNS:
+            degrees = f"{turned:g} degrees are {math.radians(turned):.4g}"
+            self._remarks.append(f"{origin.place}: rpy is in radians, and has {turned:g}; {degrees}")
+        elif origin is not None and abs(far) > FAR:
+            self._remarks.append(f"{origin.place}: xyz is in metres, and has {far:g}; {far:g} mm are {far / 1000:g}")
         return Pose(place, from_rpy(*turn))
 
     def _name(self, element: _Element) -> str:

@@ -135,3 +135,18 @@ def test_the_number_of_elements_is_bounded(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(urdf, "ELEMENTS_BOUND", 5)
     with pytest.raises(GraphFileError, match="more than 5 elements"):
         parse("<robot>" + '<link name="a"/>' * 9 + "</robot>")
+
+
+@pytest.mark.parametrize(
+    ("origin", "told"),
+    [
+        ('rpy="0 0 90"', "rpy is in radians, and has 90; 90 degrees are 1.571"),
+        ('xyz="0 -250 0"', "xyz is in metres, and has -250; -250 mm are -0.25"),
+        ('xyz="0 0 1" rpy="0 0 3.1416"', ""),
+    ],
+)
+def test_origins_in_other_units(origin: str, told: str) -> None:
+    """They are read as they are, with a remark."""
+    joint = f'<joint name="j" type="fixed"><parent link="a"/><child link="b"/><origin {origin}/></joint>'
+    found = robot(f'<link name="a"/>\n<link name="b"/>\n{joint}').remarks
+    assert [text.partition(": ")[2] for text in found] == ([told] if told else [])
