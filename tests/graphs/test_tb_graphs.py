@@ -99,4 +99,4 @@ async def test_mapping(graph: Graph, seed: int) -> None:
     cells = nodes["/mapper"].map.map()  # type: ignore[attr-defined]
     assert cells.size == pytest.approx((10.2, 8.2), abs=0.5)
     assert cells.at(0.0, 0.0) < 20  # free where it started
-    assert cells.at(-0.82, 0.0) > 80  # the wall behind
+    assert max(cells.at(x, 0.0) for x in (-0.78, -0.80, -0.82, -0.84)) > 80  # the wall behind, within a cell

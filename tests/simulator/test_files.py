@@ -44,7 +44,7 @@ MISTAKES = {
     "robots: [{name: a}, {name: a}]": ["two robots are called 'a'"],
     "robots: [{name: 'a b'}]": ["'a b' is not a node name"],
     "friction: 0": ["1:11: 0: input should be greater than 0"],
-    "walls: {}": ["1:8: {}: a list belongs here: write each item in a line of its own, after a dash"],
+    "walls: {}": ["1:8: {}: a list belongs here: [..., ...], or each item in a line of its own, after a dash"],
     "scene: no.xml": ["1:8: there is no file "],
     "scene: w.yaml": ["1:8: a scene is a file of MuJoCo or URDF, .xml, .mjcf, .urdf, not w.yaml"],
     "map: {file: no.yaml}": ["1:13: there is no file "],
