@@ -10,7 +10,6 @@ from pathlib import Path
 import graphflow
 from graphflow import GraphFileError, Node, Param, service
 from graphflow.maps import GridMap, read_map
-from graphflow.maps.files import coarseness
 from graphflow.msgs.nav2_msgs.srv import LoadMap
 from graphflow.msgs.nav_msgs.msg import OccupancyGrid
 from graphflow.msgs.nav_msgs.srv import GetMap
@@ -39,7 +38,7 @@ class MapServer(Node):
         self.grid = read_map(Path(file).expanduser())
         height, width = self.grid.cells.shape
         self.log.info("%s: %d x %d cells of %g m", file, width, height, self.grid.resolution)
-        if remark := coarseness(self.grid):
+        if remark := self.grid.remark:
             self.log.warning("%s: %s", file, remark)
         message = self.grid.to_msg(self.frame_id, self.clock.now())
         self.maps.publish(message)

@@ -17,7 +17,6 @@ from graphflow import GraphFileError, Node, Param, ParameterError, Publisher, Ti
 from graphflow.description import Joint, parse, read_robot
 from graphflow.msgs.sensor_msgs.msg import JointState
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.names import did_you_mean
 from graphflow.qos import LATCHED, SENSOR_DATA
 from graphflow.tf import Transform, Transforms
 
@@ -111,9 +110,8 @@ class RobotStatePublisher(Node):
         own = [name for name in positions if name in self.robot.joints]
         if not own and positions and not self.has_warned:
             self.has_warned = True
-            name = next(iter(positions))
-            hint = did_you_mean(name, self.robot.joints)
-            self.log.warning("joint_states has none of the robot's joints: it has no joint %r%s", name, hint)
+            text = "joint_states has none of the robot's joints: it has no joint %s"
+            self.log.warning(text, self.robot.unknown(next(iter(positions))))
         if not stamp.nanoseconds and not self.ignore_timestamp:
             self.log.warning("joint_states has no stamp, and is left out: set header.stamp", throttle=5.0)
             return

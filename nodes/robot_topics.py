@@ -13,7 +13,6 @@ from graphflow.msgs.geometry_msgs.msg import Pose as PoseMessage
 from graphflow.msgs.nav_msgs.msg import Odometry
 from graphflow.msgs.sensor_msgs.msg import BatteryState, Imu, JointState, LaserScan
 from graphflow.msgs.std_msgs.msg import Bool, Header, String
-from graphflow.names import is_hidden
 from graphflow.qos import LATCHED, SENSOR_DATA
 from graphflow.tf import Transform, TransformBuffer
 
@@ -97,7 +96,7 @@ class RobotTopics:
     def _warn_of_rivals(self) -> None:
         """Warn of several nodes that steer the robot."""
         senders = {sender.node_name for commands in self.commands for sender in commands.matched.values()}
-        nodes = sorted(name for name in senders if not is_hidden(name))
+        nodes = sorted(name for name in senders if "/_" not in name)  # commands
         if len(nodes) > 1:
             topic = self.commands[0].name
             self._once(f"{' and '.join(nodes)} all publish {topic}, and the robot obeys the latest: stop all but one")

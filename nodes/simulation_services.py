@@ -29,7 +29,6 @@ from graphflow.msgs.simulation_interfaces.srv import (
 )
 from graphflow.msgs.std_msgs.msg import Header
 from graphflow.simulator import SimulatedRobot, Simulation, robot_model, spawned
-from graphflow.simulator.world import EDGE
 
 from .robot_topics import RobotTopics
 
@@ -213,8 +212,8 @@ def planar(pose: Pose) -> tuple[float, float, float] | str:
     yaw = math.atan2(2 * (turn.w * turn.z + turn.x * turn.y), 1 - 2 * (turn.y**2 + turn.z**2))
     if not math.isfinite(at.x + at.y + at.z + yaw):
         return "the pose has a number that is not finite"
-    if max(abs(at.x), abs(at.y)) > EDGE:
-        return f"({at.x:g}, {at.y:g}) lies beyond the end of the world, {EDGE:g} m from its middle"
+    if max(abs(at.x), abs(at.y)) > Simulation.end:
+        return f"({at.x:g}, {at.y:g}) lies beyond the end of the world, {Simulation.end:g} m from its middle"
     if abs(at.z) > FLAT or max(abs(turn.x), abs(turn.y)) > FLAT:
         return "a robot stands upright on the floor: give z: 0, and a rotation about z only"
     return at.x, at.y, yaw

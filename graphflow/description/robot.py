@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from graphflow.names import did_you_mean
 from graphflow.tf.poses import IDENTITY, Pose, Vector, about
 
 MOVES = {"revolute", "continuous", "prismatic"}
@@ -108,6 +109,10 @@ class Robot:
         """The link that is no joint's child."""
         children = {joint.child for joint in self.joints.values()}
         return next(link for link in self.links if link not in children)
+
+    def unknown(self, joint: str) -> str:
+        """Return the name of a joint that the robot does not have, with the one that is probably meant."""
+        return f"{joint!r}{did_you_mean(joint, self.joints)}"
 
     def moved(self, positions: Mapping[str, float]) -> list[tuple[Joint, float]]:
         """Return the moving joints of which the position is known, with it: those given, and those that mimic them."""

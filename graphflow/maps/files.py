@@ -26,10 +26,6 @@ OCCUPIED_THRESHOLD, FREE_THRESHOLD = 0.65, 0.196
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 
-COARSE = 1.0
-"""Metres of a cell from which a map's resolution is doubted."""
-
-
 class MapDescription(BaseModel):
     """The YAML file of a map.
 
@@ -78,14 +74,6 @@ def read_map(file: Path | str) -> GridMap:
     x, y, yaw = about.origin
     cells = _cells(grey, opacity, about)
     return GridMap(np.ascontiguousarray(cells[::-1]), about.resolution, (x, y, yaw))
-
-
-def coarseness(grid: GridMap) -> str:
-    """Return a remark on a map whose cells are so large that its resolution is probably in centimetres; else ""."""
-    if grid.resolution < COARSE:
-        return ""
-    centimetres = f"{grid.resolution / 100:g} for {grid.resolution:g} cm"
-    return f"cells of {grid.resolution:g} m are large: resolution: is in metres, {centimetres}"
 
 
 def _refuse_slips(src: source.Source) -> None:

@@ -13,6 +13,9 @@ from graphflow.msgs.nav_msgs.msg import MapMetaData, OccupancyGrid
 from graphflow.msgs.std_msgs.msg import Header
 from graphflow.times import Time
 
+COARSE = 1.0
+"""Metres of a cell from which a map's resolution is doubted."""
+
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 """The values of cells; those between are probabilities of being occupied, in percent."""
 CELLS_BOUND = 64_000_000
@@ -61,6 +64,14 @@ class GridMap:
         origin = Pose(position=Point(x=x, y=y), orientation=turn)
         info = MapMetaData(map_load_time=stamp, resolution=self.resolution, width=width, height=height, origin=origin)
         return OccupancyGrid(header=Header(stamp=stamp, frame_id=frame), info=info, data=self.cells.ravel())
+
+    @property
+    def remark(self) -> str:
+        """A sentence if its cells are so large that the resolution is probably in centimetres; else ""."""
+        if self.resolution < COARSE:
+            return ""
+        centimetres = f"{self.resolution / 100:g} for {self.resolution:g} cm"
+        return f"cells of {self.resolution:g} m are large: resolution: is in metres, {centimetres}"
 
     @property
     def size(self) -> tuple[float, float]:

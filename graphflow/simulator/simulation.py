@@ -239,6 +239,7 @@ class Simulation:
 
     Attributes:
         tick_seconds: The time that a tick lets pass.
+        end: Metres from the origin, along x and y, at which the world ends.
 
     Args:
         models: The robots of the world, by the name of their model.
@@ -249,6 +250,7 @@ class Simulation:
     """
 
     tick_seconds: ClassVar[float] = TICK
+    end: ClassVar[float] = EDGE
 
     def __init__(self, world: World, models: Mapping[str, Robot], seed: int = 0) -> None:
         self._world, self._seed, self._spawned = world, seed, 0

@@ -138,4 +138,4 @@ def test_large_cells(resolution: float, is_told: bool) -> None:
     """A resolution in centimetres is doubted."""
     grid = GridMap(GRID.cells, resolution, GRID.origin)
     text = "cells of 5 m are large: resolution: is in metres, 0.05 for 5 cm"
-    assert files.coarseness(grid) == (text if is_told else "")
+    assert grid.remark == (text if is_told else "")

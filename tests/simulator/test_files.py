@@ -35,7 +35,7 @@ MISTAKES = {
     "wals: []": ["w.yaml:1:1: unknown key 'wals'; did you mean 'walls'?"],
     "boxes: [{at: [1, 2], size: [1, -1, 1], yow: 2}]": ["1:32: -1: ", "1:40: unknown key 'yow'; did you mean 'yaw'?"],
     "boxes: [{size: [1, 1, 1]}]": ["1:9: the key 'at' is missing"],
-    "cylinders: [{at: [1], radius: 1}]": ["1:18: [1]: list should have at least 2 items"],
+    "cylinders: [{at: [1], radius: 1}]": ["1:18: [1]: has 1 of at least 2 items"],
     "cylinders: [{at: [1, .nan], radius: 1}]": ["1:22: nan: input should be a finite number"],
     "walls: [{points: [[0, 0], [0, 0]]}]": ["two neighbouring points of the wall are the same: [0, 0]"],
     "robots: [{model: burgr}]": ["1:18: there is no robot 'burgr'; did you mean 'burger'?"],
@@ -49,7 +49,7 @@ MISTAKES = {
     "scene: w.yaml": ["1:8: a scene is a file of MuJoCo or URDF, .xml, .mjcf, .urdf, not w.yaml"],
     "map: {file: no.yaml}": ["1:13: there is no file "],
     "map: {}": ["1:6: the key 'file' is missing"],
-    "- a": ["1:1: ['a']: input should be a valid dictionary"],
+    "- a": ["1:1: ['a']: keys with values belong here, in lines of their own or in braces"],
 }
 
 

@@ -14,7 +14,7 @@ from graphflow.cli.verbs import GraphVerbs
 from graphflow.errors import UsageFault
 from graphflow.introspect.empty_hint import nothing_here
 from graphflow.maps import picture
-from graphflow.maps.files import FORMATS, FREE_THRESHOLD, OCCUPIED_THRESHOLD, coarseness, read_map, write_map
+from graphflow.maps.files import FORMATS, FREE_THRESHOLD, OCCUPIED_THRESHOLD, read_map, write_map
 from graphflow.maps.grid import GridMap
 from graphflow.msgs.nav_msgs.msg import OccupancyGrid
 from graphflow.qos import LATCHED
@@ -79,7 +79,7 @@ def show(file: Path | None, topic: str, out: Path | None) -> None:
     width, height = shutil.get_terminal_size()
     output.lines(picture.text(grid, width, max(5, height - 3)))
     output.talk(picture.described(grid))
-    if remark := coarseness(grid):
+    if remark := grid.remark:
         output.talk(f"note: {remark}")
 
 

@@ -71,7 +71,7 @@ class _NoInstances(_Generated):
 
 
 def _same(a: Any, b: Any) -> bool:
-    return bool((a == b).all()) if hasattr(a, "all") else bool(a == b)
+    return bool((a == b).all()) if hasattr(a, "dtype") else bool(a == b)
 
 
 def _text(value: Any) -> str:

@@ -117,7 +117,7 @@ def _image(message: Fields) -> str:
     if size != count:
         return f"data has {count} bytes, and step * height is {size}; step is the number of bytes in a row"
     if count and not _ENCODINGS.fullmatch(message.encoding):
-        return f"there is no encoding {message.encoding!r}{did_you_mean(message.encoding, _BYTES)}"
+        return f"there is no encoding {message.encoding!r}{did_you_mean(message.encoding.lower(), _BYTES)}"
     width = message.width * _BYTES.get(message.encoding, 0)
     if count and message.step < width:
         return f"step is {message.step}, and a row of {message.width} pixels in {message.encoding} has {width} bytes"

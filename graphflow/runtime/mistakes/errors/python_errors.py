@@ -221,7 +221,8 @@ def _of_kind(error: BaseException, line: str) -> str:
         return way
     if isinstance(error, TypeError) and (way := text_for_number(error, line)):
         return way
-    if re.search(_COROUTINE, str(error)) and not _is_in_coroutine(error):
+    is_used = re.search(_COROUTINE, str(error)) and "context manager" not in str(error)
+    if is_used and not _is_in_coroutine(error):
         return "that is a coroutine: in a thread write call_sync(...) for call(...); else write async def, and await"
     from graphflow.runtime.mistakes.errors.class_errors import class_in_place  # most programs never need them
     from graphflow.runtime.mistakes.errors.empty_slices import empty_slice
