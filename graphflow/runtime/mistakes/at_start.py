@@ -6,6 +6,7 @@ import logging
 from collections.abc import Sequence
 
 from graphflow.analysis.user_code import is_users_module
+from graphflow.runtime.mistakes.source.module_variables import exchanged
 from graphflow.runtime.part import Host
 from graphflow.times import to_ns
 
@@ -18,7 +19,6 @@ def warn_of_variables(host: Host, instance: object) -> None:
     cls: type = type(instance)
     if not is_users_module(cls.__module__):
         return
-    from graphflow.runtime.mistakes.source.module_variables import exchanged  # as below
 
     def check() -> None:
         present: set[type] = {type(node.instance) for node in host.context.nodes}

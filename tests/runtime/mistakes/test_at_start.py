@@ -9,8 +9,8 @@ import pytest
 
 from graphflow import Node, timer
 from graphflow.runtime.context import Context
+from graphflow.runtime.mistakes import at_start
 from graphflow.runtime.mistakes.at_start import warn_at_start
-from graphflow.runtime.mistakes.source import module_variables
 from graphflow.runtime.mistakes.source.module_variables import Exchanged
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
@@ -44,7 +44,7 @@ async def test_variables_of_another_process(
     graph: Graph, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, is_together: bool
 ) -> None:
     """They are told some seconds after the start, unless a node of the other class is there."""
-    monkeypatch.setattr(module_variables, "exchanged", lambda cls: (Exchanged(Other, "alone"),) if cls is Robot else ())
+    monkeypatch.setattr(at_start, "exchanged", lambda cls: (Exchanged(Other, "alone"),) if cls is Robot else ())
     context = Context(graph.network.session(asyncio.get_running_loop()), clock=graph.clock)
     for node in (Robot(), Other()) if is_together else (Robot(),):
         await core_of(node).start(context)
