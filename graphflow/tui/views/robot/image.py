@@ -155,6 +155,10 @@ class ImageView(View):
         self.closed()
         self._topic, self._seen = next_of(topics_of(self.hub.live, IMAGE, COMPRESSED), self._topic), 0
 
+    def do_hz(self) -> None:
+        if self._topic:
+            self.open("hz", self._topic)
+
     def do_pause(self) -> None:
         self._paused = not self._paused
 

@@ -201,6 +201,10 @@ class Scan(View):
             self.closed()
             self._topic, self._seen = next_of(topics_of(live, SCAN), self._topic), 0
 
+    def do_echo(self) -> None:
+        if self._topic:
+            self.open("echo", self._topic)
+
     def closed(self) -> None:
         if self._monitor is not None:
             self._monitor.close()
