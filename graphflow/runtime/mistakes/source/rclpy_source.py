@@ -31,7 +31,6 @@ from graphflow.runtime.mistakes.source.never_equal import never_exact
 from graphflow.runtime.mistakes.source.old_parameters import old_parameters
 from graphflow.runtime.mistakes.source.quaternions import angles_as_quaternions
 from graphflow.runtime.mistakes.source.reused_objects import reused_objects
-from graphflow.runtime.mistakes.source.unmanaged_publishers import unmanaged_publishers
 from graphflow.runtime.mistakes.source.wrong_scale import wrong_scale
 
 
@@ -44,7 +43,7 @@ def slips(module: ast.Module) -> list[tuple[int, str]]:
     found += [*reused_objects(module), *angles_as_quaternions(module), *busy_loops(module), *after_spin(module)]
     found += [*message_values(module, subscribed(module))]
     found += [*cancelled_futures(module), *lone_nanoseconds(module), *mixed_interfaces(module)]
-    found += [*old_parameters(module), *wrong_scale(module), *names_in_pairs(module), *unmanaged_publishers(module)]
+    found += [*old_parameters(module), *wrong_scale(module), *names_in_pairs(module)]
     return found
 
 
