@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 from graphflow.errors import CallError
@@ -15,6 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
+
+ROUNDS = 10
+"""Timeouts that `idle` spends on all nodes together, so that silent nodes can not hold it up."""
 
 _CHANGE = "lifecycle_msgs/srv/ChangeState"
 _STATE = "lifecycle_msgs/srv/GetState"
@@ -36,14 +40,23 @@ def state(view: View, node: str, timeout: float) -> State:
 
 
 def idle(view: View, timeout: float) -> Iterator[str]:
-    """Yield a sentence for each lifecycle node that is not active, and how to activate it; silent ones are left out."""
+    """Yield a sentence for each lifecycle node that is not active, and how to activate it; silent ones are left out.
+
+    Args:
+        timeout: Seconds to wait for one node; all together get `ROUNDS` times as long, and the rest are left out.
+    """
+    end = time.monotonic() + ROUNDS * timeout
     for node in managed_nodes(view.cache):
+        if is_hidden(node):
+            continue
+        if time.monotonic() >= end:
+            return
         try:
             now = LifecycleState(state(view, node, timeout).id)
         except (CallError, ValueError):
             continue
         steps = {LifecycleState.UNCONFIGURED: ("configure", "activate"), LifecycleState.INACTIVE: ("activate",)}
-        if now in steps and not is_hidden(node):
+        if now in steps:
             way = " && ".join(f"graphflow lifecycle set {node} {step}" for step in steps[now])
             yield f"{node} is {now.label}, not active: {way}"
 

@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from graphflow import LifecycleNode, Node
+from graphflow.errors import CallError
 from graphflow.introspect.graph_view import View
-from graphflow.introspect.lifecycles import change, idle, managed_nodes, state, transitions
+from graphflow.introspect.lifecycles import ROUNDS, change, idle, managed_nodes, state, transitions
 from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 from graphflow.msgs.lifecycle_msgs.srv import ChangeState
 from graphflow.testing import Graph
@@ -70,3 +71,26 @@ async def test_nodes_that_are_not_active(graph: Graph, number: int, told: str) -
     view = Asked(current_state=State(id=number))
     view.cache = node.context.cache
     assert list(idle(view, 1.0)) == ([f"/lived is {told}"] if told else [])
+
+
+async def test_many_silent_nodes(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They cost a bounded time together, and hidden nodes are not asked at all."""
+    names = [f"silent{i}" for i in range(ROUNDS + 5)]
+    nodes = [LifecycleNode(name) for name in ("_hidden", *names)]
+    await graph.start(*nodes)
+    now = 0.0
+    asked: list[str] = []
+
+    def call(name: str, *_: Any) -> Any:
+        nonlocal now
+        now += 1.0
+        asked.append(name)
+        raise CallError(name)
+
+    view = Asked()
+    view.cache = nodes[0].context.cache
+    monkeypatch.setattr(view, "call", call)
+    monkeypatch.setattr("graphflow.introspect.lifecycles.time", SimpleNamespace(monotonic=lambda: now))
+    assert list(idle(view, 1.0)) == []
+    assert len(asked) == ROUNDS
+    assert not any("_hidden" in name for name in asked)
