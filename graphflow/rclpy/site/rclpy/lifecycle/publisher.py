@@ -32,11 +32,13 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         # Weakly, since the node keeps its publishers.
         self._graphflow_node: Callable[[], Any] = _none
         self._graphflow_machine: HasState | None = None
+        self._graphflow_is_late = False
         self._graphflow_has_warned = False
 
     def attach(self, node: Callable[[], Any], machine: HasState) -> None:
         """Set the publisher's node, by a weak reference, and the holder of its state. graphflow's own."""
         self._graphflow_node, self._graphflow_machine = node, machine
+        self._graphflow_is_late = machine.state is State.ACTIVE
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Send from now on, and warn again after the next deactivation."""
@@ -53,7 +55,9 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         steps = {State.UNCONFIGURED: ("configure", "activate"), State.INACTIVE: ("activate",)}.get(state, ())
         way = " && ".join(f"graphflow lifecycle set {name} {step}" for step in steps)
         why = f"{name} is {state.label}{f', to activate it: {way}' if way else ''}"
-        if state is State.ACTIVE:
+        if state is State.ACTIVE and self._graphflow_is_late:
+            why = f"it was created while {name} was active: create it in on_configure"
+        elif state is State.ACTIVE:
             why = f"{described(node.on_activate)} has to end with return super().on_activate(state), which activates it"
         node.get_logger().warning(
             f"Trying to publish message on the topic '{self.topic_name}', but the publisher is not activated: {why}"

@@ -65,3 +65,15 @@ def test_an_activation_without_super(capfd: pytest.CaptureFixture[str]) -> None:
     warning = capfd.readouterr().err
     assert "not activated: on_activate (" in warning
     assert "test_publisher.py:51) has to end with return super().on_activate(state), which activates it" in warning
+
+
+def test_a_publisher_of_an_active_node(capfd: pytest.CaptureFixture[str]) -> None:
+    """As in ROS 2, it sends nothing; the warning tells where to create it, and does not blame the callback."""
+    rclpy.init()
+    node = LifecycleNode("lamp")
+    node.trigger_configure()
+    node.trigger_activate()
+    node.create_lifecycle_publisher(String, "light", 1).publish(String())
+    warning = capfd.readouterr().err
+    assert "not activated: it was created while /lamp was active: create it in on_configure" in warning
+    assert "super()" not in warning
