@@ -105,7 +105,7 @@ def _check_words(call: RecordedCall, key: str, words: list[object]) -> None:
                 flag, rest = found[0].strip(), word[found.end() :]
                 RECORDING.remark(call, f"ros_arguments: {word!r} is one word; write {flag!r}, {rest!r}")
         return
-    if "--ros-args" in words:
+    if "--ros-args" in words or text(call.get("executable")) == "xacro":  # xacro reads name:=value
         return
     for word in words:
         if isinstance(word, str) and (rule := _RULE.fullmatch(word)):

@@ -96,13 +96,18 @@ def test_files_of_parameters() -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "is_told"),
-    [(["speed:=2"], True), (["--ros-args", "-p", "speed:=2"], False), (["--rate", "2", "__name:=x"], False)],
+    ("executable", "words", "is_told"),
+    [
+        ("e", ["speed:=2"], True),
+        ("e", ["--ros-args", "-p", "speed:=2"], False),
+        ("e", ["--rate", "2", "__name:=x"], False),
+        ("xacro", ["speed:=2"], False),
+    ],
 )
-def test_parameters_among_a_programs_own_arguments(words: list[str], is_told: bool) -> None:
-    """A remark shows where they belong."""
+def test_parameters_among_a_programs_own_arguments(executable: str, words: list[str], is_told: bool) -> None:
+    """A remark shows where they belong; xacro reads such arguments."""
     RECORDING.remarks = []
-    actions([said("Node", package="p", executable="e", arguments=words)])
+    actions([said("Node", package="p", executable=executable, arguments=words)])
     text = "arguments: nothing reads 'speed:=2'; write parameters=[{'speed': 2}], or remappings=[('speed', '2')]"
     assert RECORDING.remarks == ([{"line": 7, "message": text}] if is_told else [])
 
