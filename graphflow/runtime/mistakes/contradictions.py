@@ -34,6 +34,7 @@ _ENCODINGS = re.compile(
 )
 """The encodings of sensor_msgs/image_encodings.hpp."""
 _POLE = 90.0
+"""The greatest latitude, in degrees."""
 _SIZES = {3: 2, 4: 2, 5: 4, 6: 4, 7: 4, 8: 8}
 """The bytes of `PointField.datatype`, for those of more than one."""
 _TURNS = 10.0
@@ -133,12 +134,14 @@ def _joints(message: Fields) -> str:
 
 
 def _map(message: Fields) -> str:
+    import numpy as np  # where there are maps, it is loaded already
+
     cells, count = message.info.width * message.info.height, len(message.data)
     if cells != count:
         return f"data has {count} cells, and info.width * info.height is {cells}"
     if count and not message.info.resolution > 0:
         return "info.resolution is 0: set the metres per cell"
-    if count and max(message.data) == 1:
+    if count and np.max(message.data) == 1:
         return "its greatest cell is 1, which is free: occupied cells are 100, free ones 0 and unknown ones -1"
     return ""
 
