@@ -148,6 +148,8 @@ def warn_of_two_clocks(first_ns: int, second_ns: int) -> None:
         warnings.warn(text, RuntimeWarning, stacklevel=depth)
 
 
+SIMULATED = 1e8
+"""Seconds, about three years, between a stamp and the clock beyond which one of them is of simulated time."""
 _TWO_CLOCKS = 10**9 * NANOSECONDS
 """About 32 years."""
 _ARITHMETIC = (__name__, "rclpy.time")

@@ -8,9 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from graphflow.tf.info import FrameInfo
 from graphflow.tf.poses import AXES, rotate, to_rpy
 from graphflow.tf.transform import Transform
-
-YEARS = 1e8
-"""Seconds beyond which an age is that of a simulated time, seen by the wall clock."""
+from graphflow.times import SIMULATED
 
 
 def described(transform: Transform) -> str:
@@ -72,7 +70,7 @@ def remark(info: FrameInfo, age: float) -> str:
     if info.is_static:
         return f"static, {sender}"
     rate = f"{info.rate:.1f} Hz, " if info.rate else ""
-    when = f"{age:.2f} s old" if abs(age) < YEARS else f"at {info.newest.seconds:.2f} s"
+    when = f"{age:.2f} s old" if abs(age) < SIMULATED else f"at {info.newest.seconds:.2f} s"
     return f"{rate}{when}, {sender}"
 
 

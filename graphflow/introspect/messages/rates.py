@@ -10,8 +10,7 @@ import statistics
 from collections import deque
 from typing import NamedTuple
 
-SIMULATED = 1e8
-"""Seconds of delay, three years, beyond which a stamp and the clock are of different kinds."""
+from graphflow.times import SIMULATED
 
 
 class Spread(NamedTuple):
