@@ -171,7 +171,7 @@ def _substitute(word: str, name: str, namespace: str, node: str) -> str:
     if word not in values:
         if " " in name:
             first = name.split()[0]
-            raise InvalidName(f"{name!r} has spaces in it; the name ends at {first!r}, and the rest belongs elsewhere")
+            raise InvalidName(f"{name!r} has spaces in it; the name ends at {first!r}, so write the name alone")
         raise InvalidName(f"{name!r} has {{{word}}} in it; only {{node}} and {{ns}} are known")
     return values[word]
 

@@ -73,7 +73,7 @@ class RobotStatePublisher(Node):
         await self.clock.sleep(PATIENCE)
         moving = [joint.child for joint in self.robot.joints.values() if joint.moves]
         if moving and not self.published:
-            text = "no joint_states yet, so %s is not sent: start what publishes them, such as joint_state_publisher"
+            text = "no joint_states yet, so nothing is sent for %s: start for example joint_state_publisher"
             self.log.warning(text, ", ".join(moving[:3]))
 
     @robot_description.check

@@ -166,7 +166,7 @@ def test_the_namespace_is_substituted(word: str) -> None:
         ("a//b", "has // in it"),
         ("2a", "'2a' may have"),
         ("a b", "may have only"),
-        ("/spawn x/srv/Spawn {x: 1}", "has spaces in it; the name ends at '/spawn', and the rest belongs elsewhere"),
+        ("/spawn x/srv/Spawn {x: 1}", "has spaces in it; the name ends at '/spawn', so write the name alone"),
         ("{nod}", r"has \{nod\} in it; only \{node\} and \{ns\} are known"),
         ("a{", "may have only"),
     ],

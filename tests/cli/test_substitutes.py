@@ -1,4 +1,4 @@
-"""What stands for programs of ROS that graphflow does not have."""
+"""Nodes that replace programs of ROS that graphflow does not have."""
 
 from __future__ import annotations
 

@@ -128,7 +128,10 @@ async def test_joints_that_are_not_sent(graph: Graph, caplog: pytest.LogCaptureF
     """The frames that wait are told, and then states without a stamp and positions beyond the limits."""
     await graph.start(RobotStatePublisher(robot_description=ROBOT))
     await graph.clock.advance(6.0)
-    assert "no joint_states yet, so arm, finger is not sent: start what publishes them" in caplog.text
+    assert (
+        "no joint_states yet, so nothing is sent for arm, finger: start for example joint_state_publisher"
+        in caplog.text
+    )
     joints = graph.publisher(JointState, "/joint_states")
     joints.publish(JointState(name=["turn"], position=[0.1]))
     joints.publish(state(1.0, grip=90.0))

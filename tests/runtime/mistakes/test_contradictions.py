@@ -36,7 +36,7 @@ class _Host:
 
 
 def told(message: Any, caplog: pytest.LogCaptureFixture) -> list[str]:
-    """What is said of a message that is published twice."""
+    """Return the warnings about a message that is published twice."""
     host: Any = _Host()
     first = FirstMessages(host, type(message).SCHEMA.name, "/x")
     for _ in range(2):

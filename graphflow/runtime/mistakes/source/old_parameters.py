@@ -31,7 +31,9 @@ def old_parameters(module: ast.Module) -> Iterator[tuple[int, str]]:
 def _reads(value: ast.expr) -> bool:
     """Whether an expression is the value of a parameter of the node."""
     return any(
-        isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
-        and node.func.attr == "get_parameter" and last_name(node.func.value) == "self"
+        isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Attribute)
+        and node.func.attr == "get_parameter"
+        and last_name(node.func.value) == "self"
         for node in ast.walk(value)
-    )  # fmt: skip
+    )

@@ -40,7 +40,7 @@ def test_goals_of_a_timer(node: Node, spin: Spinner, caplog: Caplog) -> None:
 
 
 def test_goals_of_a_program(node: Node, caplog: Caplog) -> None:
-    """What a program sends outside callbacks ends."""
+    """Goals that a program sends outside callbacks end."""
     client = ActionClient(node, Fibonacci, "count")
     for _ in range(MANY + 5):
         client.send_goal_async(Fibonacci.Goal())
