@@ -95,11 +95,14 @@ class RobotTopics:
 
     def _warn_of_rivals(self) -> None:
         """Warn of several nodes that steer the robot."""
-        senders = {sender.node_name for commands in self.commands for sender in commands.matched.values()}
-        nodes = sorted(name for name in senders if "/_" not in name)  # commands
+        nodes = [name for name in self._senders() if "/_" not in name]  # not commands, which people type
         if len(nodes) > 1:
             topic = self.commands[0].name
             self._once(f"{' and '.join(nodes)} all publish {topic}, and the robot obeys the latest: stop all but one")
+
+    def _senders(self) -> list[str]:
+        """Return the nodes that publish commands for it."""
+        return sorted({sender.node_name for commands in self.commands for sender in commands.matched.values()})
 
     @property
     def title(self) -> str:
@@ -133,7 +136,9 @@ class RobotTopics:
         try:
             self.robot.command(twist.linear.x, twist.angular.z)
         except ValueError as error:
-            self._node.log.warning("%scmd_vel: %s; it is left out", self._before, error, throttle=2.0)
+            topic, senders = f"{self._before}cmd_vel", " or ".join(self._senders()) or "a node that has gone"
+            text = "%s: %s, and is left out; %s sends it: look for a division by 0, and for ranges that are inf or nan"
+            self._node.log.warning(text, topic, error, senders, throttle=2.0)
 
     def _explain(self, twist: Twist) -> None:
         """Say, once each, which part of a command has no effect."""

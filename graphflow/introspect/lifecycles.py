@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.errors import CallError
 from graphflow.introspect.graph_view import View
@@ -13,7 +13,7 @@ from graphflow.names import is_hidden
 from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 
@@ -39,26 +39,37 @@ def state(view: View, node: str, timeout: float) -> State:
     return response.current_state
 
 
-def idle(view: View, timeout: float) -> Iterator[str]:
-    """Yield a sentence for each lifecycle node that is not active, and how to activate it; silent ones are left out.
+class Idle(NamedTuple):
+    """The lifecycle nodes that do nothing yet, and those whose states are not known."""
+
+    hints: list[str]
+    """A sentence for each node that is not active, with the commands that activate it."""
+    unknown: list[str]
+    """The names of the nodes that did not answer, or were not asked for lack of time."""
+
+
+def idle(view: View, timeout: float) -> Idle:
+    """Find the lifecycle nodes that are not active; hidden ones are left out.
 
     Args:
-        timeout: Seconds to wait for one node; all together get `ROUNDS` times as long, and the rest are left out.
+        timeout: Seconds to wait for one node; all together get `ROUNDS` times as long.
     """
     end = time.monotonic() + ROUNDS * timeout
+    found = Idle([], [])
     for node in managed_nodes(view.cache):
         if is_hidden(node):
             continue
-        if time.monotonic() >= end:
-            return
         try:
-            now = LifecycleState(state(view, node, timeout).id)
+            now = LifecycleState(state(view, node, timeout).id) if time.monotonic() < end else None
         except (CallError, ValueError):
-            continue
+            now = None
         steps = {LifecycleState.UNCONFIGURED: ("configure", "activate"), LifecycleState.INACTIVE: ("activate",)}
-        if now in steps:
+        if now is None:
+            found.unknown.append(node)
+        elif now in steps:
             way = " && ".join(f"graphflow lifecycle set {node} {step}" for step in steps[now])
-            yield f"{node} is {now.label}, not active: {way}"
+            found.hints.append(f"{node} is {now.label}, not active: {way}")
+    return found
 
 
 def transitions(view: View, node: str, timeout: float, *, everything: bool = False) -> Sequence[TransitionDescription]:

@@ -70,11 +70,12 @@ async def test_nodes_that_are_not_active(graph: Graph, number: int, told: str) -
     await graph.start(node := LifecycleNode("lived"))
     view = Asked(current_state=State(id=number))
     view.cache = node.context.cache
-    assert list(idle(view, 1.0)) == ([f"/lived is {told}"] if told else [])
+    assert idle(view, 1.0).hints == ([f"/lived is {told}"] if told else [])
+    assert idle(view, 1.0).unknown == (["/lived"] if number == 99 else [])
 
 
 async def test_many_silent_nodes(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They cost a bounded time together, and hidden nodes are not asked at all."""
+    """They cost a bounded time together and are all named, and hidden nodes are not asked at all."""
     names = [f"silent{i}" for i in range(ROUNDS + 5)]
     nodes = [LifecycleNode(name) for name in ("_hidden", *names)]
     await graph.start(*nodes)
@@ -91,6 +92,6 @@ async def test_many_silent_nodes(graph: Graph, monkeypatch: pytest.MonkeyPatch) 
     view.cache = nodes[0].context.cache
     monkeypatch.setattr(view, "call", call)
     monkeypatch.setattr("graphflow.introspect.lifecycles.time", SimpleNamespace(monotonic=lambda: now))
-    assert list(idle(view, 1.0)) == []
+    assert idle(view, 1.0) == ([], sorted(f"/{name}" for name in names))
     assert len(asked) == ROUNDS
     assert not any("_hidden" in name for name in asked)

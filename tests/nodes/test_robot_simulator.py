@@ -129,7 +129,8 @@ async def test_commands_that_are_none_and_robots_in_trouble(graph: Graph, caplog
     drive = graph.publisher(Twist, "/cmd_vel")
     drive.publish(Twist(linear=Vector3(x=float("nan"))))
     await graph.clock.advance(0.1)
-    assert "cmd_vel: a velocity of nan m/s and 0.0 rad/s is not a command; it is left out" in caplog.text
+    told = "cmd_vel: a velocity of nan m/s and 0.0 rad/s is not a command, and is left out; /"
+    assert told in caplog.text
     node.simulation.robots[""].place(500.0, 0.0, 0.0)
     await graph.clock.advance(0.5)
     assert caplog.text.count("robot burger: it has left the world; call reset_simulation") == 1

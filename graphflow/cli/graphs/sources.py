@@ -10,6 +10,7 @@ from pathlib import Path
 from graphflow.analysis import deadlock_check
 from graphflow.analysis.deadlock_check import Finding
 from graphflow.analysis.hyphens import hyphen_hint
+from graphflow.analysis.mistakes import rclpy_source
 from graphflow.analysis.rclpy_check import files_in, findings_in, unfollowed_in
 from graphflow.cli import exits, output
 from graphflow.errors import Place, Problem, UsageFault
@@ -17,7 +18,6 @@ from graphflow.graph.checks.check import check
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.interface import Interface
 from graphflow.reading import found_text
-from graphflow.runtime.mistakes.source import rclpy_source
 from graphflow.supervisor.launching.probe import probe
 from graphflow.supervisor.launching.probed import read_interfaces, slips_in
 from graphflow.workspace.node_classes import node_classes_in

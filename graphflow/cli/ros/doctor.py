@@ -6,7 +6,7 @@ import os
 import re
 import sys
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib import metadata
 
 import click
@@ -30,6 +30,9 @@ ANSWER_LIMIT = 1.0
 """Seconds that the processes of a graph have to answer."""
 SAMPLE_INTERVAL = 0.5
 """Seconds between two readings of the nodes' counters."""
+
+NAMED = 10
+"""Nodes of one kind that are named, before the rest are counted."""
 
 Findings = dict[str, list[str]]
 """Texts of findings, by the name of the check."""
@@ -131,7 +134,7 @@ def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
         "misfits": list(complaints(view.cache)),
         "health": health.faults,
     }
-    unseen = managed.unseen
+    lifecycles = idle(view, ANSWER_LIMIT)
     late = [
         f"{who}: the event loop was late {'once' if n == 1 else f'{n} times'}, by {most:.1f} s at most"
         for who, n, most in read.late
@@ -143,13 +146,21 @@ def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
     )
     notes = {
         "late": late,
-        "hints": [*health.hints, *idle(view, ANSWER_LIMIT)],
+        "hints": [*health.hints, *lifecycles.hints],
         "silent": others,
         "unreadable": unread,
-        "unseen": unseen,
+        "unseen": [*managed.unseen, *_unknown(lifecycles.unknown)],
         "kept_back": profiles,
     }
     return faults, notes, sum(not is_hidden(name) for name in read.nodes)
+
+
+def _unknown(nodes: Sequence[str]) -> list[str]:
+    """Return a line that names lifecycle nodes whose states are not known."""
+    if not nodes:
+        return []
+    more = f" and {len(nodes) - NAMED} more" if len(nodes) > NAMED else ""
+    return [f"lifecycle nodes that did not tell their states: {', '.join(nodes[:NAMED])}{more}"]
 
 
 def _sample(view: View) -> Look:

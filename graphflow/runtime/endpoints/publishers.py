@@ -30,8 +30,15 @@ from graphflow.wire.shared_memory import ring_key
 M = TypeVar("M", bound=Message)
 _pack = attachment.LAYOUT.pack
 
-WITH_CONTRADICTIONS = {"geometry_msgs", "nav_msgs", "sensor_msgs", "trajectory_msgs", "visualization_msgs"}
-"""The packages with messages whose first ones are checked."""
+WITH_CONTRADICTIONS = {
+    *("geometry_msgs/msg/Pose", "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped"),
+    *("nav_msgs/msg/OccupancyGrid", "nav_msgs/msg/Odometry", "nav_msgs/msg/Path"),
+    *("sensor_msgs/msg/BatteryState", "sensor_msgs/msg/CompressedImage", "sensor_msgs/msg/Image"),
+    *("sensor_msgs/msg/JointState", "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/NavSatFix"),
+    *("sensor_msgs/msg/PointCloud2", "trajectory_msgs/msg/JointTrajectory"),
+    *("visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray"),
+}
+"""The types whose first messages are checked; here, so that publishers of others need not import the checks."""
 
 
 _open: WeakSet[TopicPublisher[Any]] = WeakSet()
@@ -131,7 +138,7 @@ class TopicPublisher(Endpoint, Generic[M]):
             self._declared.append(self._alive)
         self._shorten()
         _open.add(self)
-        if self.type_name.partition("/")[0] in WITH_CONTRADICTIONS:
+        if self.type_name in WITH_CONTRADICTIONS:
             self._check_first()
 
     def _check_first(self) -> None:
@@ -139,8 +146,6 @@ class TopicPublisher(Endpoint, Generic[M]):
         from graphflow.runtime.mistakes.contradictions import FirstMessages  # most processes never need it
 
         first, usual = FirstMessages(self.host, self.type_name, self.name), self.publish
-        if not first.is_open:
-            return
 
         def publish(message: M) -> None:
             first.check(message)

@@ -49,14 +49,15 @@ class FirstMessages:
     """The check of one publisher's first messages, with one warning at most.
 
     Args:
+        type_name: One of `CHECKS`.
         name: The topic.
     """
 
     def __init__(self, host: Host, type_name: str, name: str) -> None:
         self._host, self._name = host, name
-        self._check = _CHECKS.get(type_name)
+        self._check = CHECKS[type_name]
         self._needs_frame = type_name in _PLACED
-        self._left = CHECKED if self._check is not None else 0
+        self._left = CHECKED
 
     @property
     def is_open(self) -> bool:
@@ -67,9 +68,7 @@ class FirstMessages:
         """Warn of a contradiction in a message."""
         self._left -= 1
         try:
-            text = (self._check(message) if self._check is not None else "") or _frame(
-                message, is_needed=self._needs_frame
-            )
+            text = self._check(message) or _frame(message, is_needed=self._needs_frame)
         except (AttributeError, TypeError, ValueError):
             return  # a field of a wrong type, which is an error of its own when the message is encoded
         if text:
@@ -211,7 +210,7 @@ def _turn(q: Fields) -> str:
     return ""
 
 
-_CHECKS: dict[str, Check] = {
+CHECKS: dict[str, Check] = {
     "geometry_msgs/msg/Pose": lambda m: _turn(m.orientation),
     "geometry_msgs/msg/PoseStamped": lambda m: _turn(m.pose.orientation),
     "geometry_msgs/msg/PoseWithCovarianceStamped": lambda m: _turn(m.pose.pose.orientation),

@@ -41,7 +41,7 @@ class Publisher(Created):
         self.endpoint, self._life, self._handle = publisher_impl, life, handle
         self.msg_type, self.topic, self.qos_profile = msg_type, topic, qos_profile
         self.event_handlers = event_handlers
-        if publisher_impl.type_name.partition("/")[0] in WITH_CONTRADICTIONS:
+        if publisher_impl.type_name in WITH_CONTRADICTIONS:
             self._graphflow_check_first()
 
     def _graphflow_check_first(self) -> None:
@@ -49,8 +49,6 @@ class Publisher(Created):
         from graphflow.runtime.mistakes.contradictions import FirstMessages  # most programs never need it
 
         first = FirstMessages(self.endpoint.host, self.endpoint.type_name, self.endpoint.name)
-        if not first.is_open:
-            return
 
         def publish(msg: Any) -> None:
             if isinstance(msg, self.msg_type):

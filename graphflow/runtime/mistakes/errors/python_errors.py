@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from graphflow.analysis.hiding import hidden
 from graphflow.analysis.user_code import parts_of, place_in
+from graphflow.runtime.mistakes.errors.name_errors import owner_of
+from graphflow.runtime.mistakes.errors.text_numbers import text_for_number
 from graphflow.runtime.mistakes.rclpy_words import EXAMPLES
-from graphflow.runtime.mistakes.source.name_errors import owner_of
-from graphflow.runtime.mistakes.source.text_numbers import text_for_number
 
 
 class Remark(NamedTuple):

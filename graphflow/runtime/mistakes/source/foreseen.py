@@ -11,12 +11,12 @@ import sys
 from collections.abc import Iterator
 
 from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.mistakes.calls.called_early import results_passed
 from graphflow.analysis.syntax import FunctionNode
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import DeclarationError, Place
 from graphflow.runtime.declarations.declare import Declaration
 from graphflow.runtime.declarations.misplaced import not_of_node
-from graphflow.runtime.mistakes.source.called_early import results_passed
 from graphflow.runtime.mistakes.source.early_waits import early_waits
 from graphflow.runtime.mistakes.source.never_awaited import never_awaited
 from graphflow.runtime.mistakes.source.shadowing import definition_of

@@ -17,9 +17,8 @@ from functools import cache
 from pathlib import Path
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.swallowed import caught_in_vain
+from graphflow.analysis.mistakes import native_source
 from graphflow.analysis.syntax import FunctionNode, syntax_of, walk
-from graphflow.analysis.uncalled import uncalled_methods
 from graphflow.analysis.user_code import is_installed, is_users_module
 from graphflow.errors import Place
 from graphflow.names import nearest
@@ -27,32 +26,14 @@ from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
-from graphflow.runtime.mistakes.source.added_arrays import added_arrays
-from graphflow.runtime.mistakes.source.busy_loops import busy_loops
-from graphflow.runtime.mistakes.source.called_early import results_passed
-from graphflow.runtime.mistakes.source.conditions import constant_conditions
-from graphflow.runtime.mistakes.source.contrary_names import contrary_names
-from graphflow.runtime.mistakes.source.defined_twice import defined_twice
-from graphflow.runtime.mistakes.source.ineffective import ineffective
-from graphflow.runtime.mistakes.source.literal_units import literal_units
-from graphflow.runtime.mistakes.source.lone_nanoseconds import lone_nanoseconds
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
-from graphflow.runtime.mistakes.source.lost_values import lost_values
-from graphflow.runtime.mistakes.source.message_values import message_values
-from graphflow.runtime.mistakes.source.misgiven import misgiven
-from graphflow.runtime.mistakes.source.misplaced import misplaced, without_super
-from graphflow.runtime.mistakes.source.mixed_angles import mixed_angles
-from graphflow.runtime.mistakes.source.nanoseconds import compared_nanoseconds
-from graphflow.runtime.mistakes.source.never_equal import never_equal, never_exact
+from graphflow.runtime.mistakes.source.never_equal import never_equal
 from graphflow.runtime.mistakes.source.overridden import overridden
-from graphflow.runtime.mistakes.source.quaternions import angles_as_quaternions
-from graphflow.runtime.mistakes.source.reused_objects import reused_objects
-from graphflow.runtime.mistakes.source.separate_groups import separate_groups
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 from graphflow.runtime.mistakes.source.uncancelled import uncancelled
 from graphflow.runtime.mistakes.source.unrepeated import unrepeated
+from graphflow.runtime.mistakes.source.without_super import without_super
 from graphflow.runtime.mistakes.source.wrong_fields import message_of, resolved, wrong_fields
-from graphflow.runtime.mistakes.source.wrong_scale import wrong_scale
 from graphflow.runtime.mistakes.source.wrong_units import wrong_units
 
 logger = logging.getLogger("graphflow")
@@ -104,26 +85,18 @@ def _slips(cls: type) -> Iterator[str]:
             if isinstance(method, FunctionNode):
                 handler = declared.handlers(parent).get(method.name)
                 yield from wrong_fields(method, handler, file, space)
-        found = (*uncalled_methods(definition), *misgiven(definition), *caught_in_vain(definition))
-        found = (*found, *ineffective(definition), *overridden(parent, definition), *defined_twice(definition))
-        found = (*found, *results_passed(definition, is_of_threads=True), *wrong_units(cls, definition))
-        found = (*found, *literal_units(definition), *misplaced(definition), *without_super(parent, definition))
-        found = (*found, *reused_objects(definition), *angles_as_quaternions(definition), *busy_loops(definition))
-        found = (*found, *lone_nanoseconds(definition), *unrepeated(parent, definition))
-        heard = [name for name, handler in declared.handlers(parent).items() if handler.kind == "subscription"]
-        found = (*found, *message_values(definition, heard), *added_arrays(definition))
-        found = (*found, *uncancelled(parent, definition), *separate_groups(definition))
         module = syntax_of(file).module
-        found = (*found, *never_equal(cls, parent, definition, module))
-        of_file = (*compared_nanoseconds(module), *mixed_angles(module), *constant_conditions(module))
-        of_file = (*of_file, *lost_values(module), *never_exact(module), *contrary_names(module))
-        of_file = (*of_file, *wrong_scale(module))
-        found = (*found, *(slip for slip in of_file if _is_in(definition, slip[0])))
+        subscribed = [name for name, handler in declared.handlers(parent).items() if handler.kind == "subscription"]
+        found = [
+            *native_source.slips(definition, module, subscribed),
+            *overridden(parent, definition),
+            *wrong_units(cls, definition),
+            *without_super(parent, definition),
+            *unrepeated(parent, definition),
+            *uncancelled(parent, definition),
+            *never_equal(cls, parent, definition, module),
+        ]
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
-
-
-def _is_in(definition: ast.ClassDef, line: int) -> bool:
-    return definition.lineno <= line <= (definition.end_lineno or 0)
 
 
 def other_modules(file: str, word: str) -> Iterator[ast.Module]:

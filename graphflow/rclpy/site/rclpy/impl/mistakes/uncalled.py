@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from graphflow.analysis.mistakes.rclpy_source import slips
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.user_code import is_users, short_place
-from graphflow.runtime.mistakes.source.rclpy_source import slips
 from rclpy.impl.entities import entities_of
 from rclpy.impl.nodes import internals_of, nodes_of
 

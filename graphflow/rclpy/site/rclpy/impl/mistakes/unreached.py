@@ -19,10 +19,10 @@ from types import CodeType, FunctionType, MethodType
 from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.analysis.frames import Frame
+from graphflow.analysis.mistakes.calls.called_early import spins_called
 from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
 from graphflow.analysis.user_code import is_ours, is_users, short_place
 from graphflow.reading import found_text
-from graphflow.runtime.mistakes.source.called_early import spins_called
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
 from rclpy.executors import Executor

@@ -1,0 +1,1 @@
+"""Mistakes in what a program calls, passes or defines; each module finds one kind."""

@@ -1,0 +1,67 @@
+"""Definitions and assignments in a class that have no effect where they are.
+
+Examples are a decorated handler inside another method, `_init_`, `goal.feedback = message`, and an `on_start` that
+replaces its parent's, whose attributes are then missing.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.syntax import FunctionNode, last_name
+
+_DECORATORS = {"timer", "subscription", "service", "action", "task"}
+_METHODS = {"publish", "publish_feedback", "feedback", "succeed", "abort", "canceled", "send_goal_async", "call_async"}
+"""Methods to which beginners assign a message."""
+_DUNDERS = {"init": "__init__", "int": "__init__", "inti": "__init__", "main": "__main__"}
+_HOOKS = ("on_start", "on_configure", "on_activate")
+
+
+def misplaced(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
+    """Find the lines of such definitions and assignments of a class; each comes with a sentence."""
+    for method in definition.body:
+        if isinstance(method, FunctionNode):
+            yield from _misspelt(method)
+            yield from _inside(method)
+    yield from replaced_methods(definition)
+
+
+def _misspelt(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[int, str]]:
+    meant = _DUNDERS.get(method.name.strip("_"))
+    if meant == "__init__" and method.name.startswith("_") and method.name not in ("__init__", "__int__", "_int"):
+        yield method.lineno, f"{method.name} is never called: write {meant}, with two underscores on each side"
+
+
+def _inside(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[int, str]]:
+    for node in ast.walk(method):
+        if node is method or not isinstance(node, FunctionNode):
+            continue
+        for decorator in node.decorator_list:
+            called = decorator.func if isinstance(decorator, ast.Call) else decorator
+            if isinstance(called, ast.Name) and called.id in _DECORATORS:
+                text = f"@{called.id} has no effect inside {method.name}: move {node.name} into the class body"
+                yield node.lineno, text
+
+
+def replaced_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find assignments to methods that are to be called: `self.pub.publish = message`."""
+    for node in ast.walk(code):
+        if not isinstance(node, ast.Assign) or _is_function(node.value):
+            continue
+        for target in node.targets:
+            if isinstance(target, ast.Attribute) and target.attr in _METHODS and not is_own(target):
+                shown = ast.unparse(target)
+                if target.attr == "feedback" and not _is_goal(target.value):
+                    continue
+                yield node.lineno, f"{shown} is a method: write {shown}({ast.unparse(node.value)[:60]})"
+
+
+def _is_goal(owner: ast.expr) -> bool:
+    return isinstance(owner, ast.Name) and "goal" in owner.id
+
+
+def _is_function(value: ast.expr) -> bool:
+    """Whether a value may stand for a method, as in a test: a function, or the result of a factory."""
+    return isinstance(value, (ast.Lambda, ast.Name)) or (isinstance(value, ast.Call) and "ock" in last_name(value.func))

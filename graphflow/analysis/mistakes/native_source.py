@@ -1,0 +1,39 @@
+"""Mistakes in the source of a node class, as far as the source alone shows them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Collection, Iterator
+from typing import Final
+
+from graphflow.analysis.mistakes.calls.misgiven import misgiven
+from graphflow.analysis.mistakes.calls.misplaced import misplaced
+from graphflow.analysis.mistakes.calls.separate_groups import separate_groups
+from graphflow.analysis.mistakes.checks import IN_CODE, IN_FILES, Found
+from graphflow.analysis.mistakes.values.added_arrays import added_arrays
+from graphflow.analysis.mistakes.values.message_values import message_values
+from graphflow.analysis.swallowed import caught_in_vain
+
+_IN_CLASSES: Final[tuple[Callable[[ast.ClassDef], Found], ...]] = (
+    misgiven,
+    misplaced,
+    separate_groups,
+    added_arrays,
+    caught_in_vain,
+)
+"""Checks of native nodes alone."""
+
+
+def slips(definition: ast.ClassDef, module: ast.Module, subscribed: Collection[str]) -> Iterator[tuple[int, str]]:
+    """Yield the lines of a class that Python runs without an error and without effect, each with a sentence.
+
+    Args:
+        module: The file with the definition.
+        subscribed: The methods of the class that receive messages.
+    """
+    for check in (*IN_CODE, *_IN_CLASSES):
+        yield from check(definition)
+    yield from message_values(definition, subscribed)
+    lines = range(definition.lineno, (definition.end_lineno or 0) + 1)
+    for of_file in IN_FILES:
+        yield from (found for found in of_file(module) if found[0] in lines)

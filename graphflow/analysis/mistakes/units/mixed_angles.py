@@ -1,0 +1,102 @@
+"""Degrees that are mixed with radians: `math.degrees(math.atan2(dy, dx)) - pose.theta`.
+
+An angle counts as one or the other only if a function of `math` or NumPy returns it, if it is a parameter declared
+with that unit, or if it is a turtlesim pose's.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from functools import cache
+from typing import Literal, TypeAlias
+
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.mistakes.pose_names import DEPTH, PoseNames, pose_names
+from graphflow.analysis.syntax import last_name, walk
+
+_DEGREES = ("degrees", "rad2deg")
+_RADIANS = ("radians", "deg2rad")
+_INVERSE = ("atan2", "atan", "asin", "acos", "arctan2", "arctan", "arcsin", "arccos")
+_TAKING_RADIANS = ("sin", "cos", "tan")
+_SAME = ("abs", "float")
+
+Unit: TypeAlias = Literal["degrees", "radians", ""]
+_UNITS: dict[str, Unit] = {"deg": "degrees", "rad": "radians"}
+"""The units of parameters."""
+
+
+@cache
+def mixed_angles(module: ast.Module) -> tuple[tuple[int, str], ...]:
+    """Return the lines that add, subtract or compare such angles, or take a sine of degrees; each with a correction."""
+    return tuple(_mixed(module, pose_names(module))) if _has_degrees(module) else ()
+
+
+def _has_degrees(module: ast.Module) -> bool:
+    """Whether a file mentions them at all; most do not."""
+    for node in ast.walk(module):
+        match node:
+            case ast.Attribute(attr=name) | ast.Name(id=name) | ast.Constant(value=str(name)):
+                if name in _DEGREES or _UNITS.get(name) == "degrees":
+                    return True
+    return False
+
+
+def _mixed(module: ast.Module, names: PoseNames) -> Iterator[tuple[int, str]]:
+    for node, parents in walk(module):
+        pairs: list[tuple[ast.expr, ast.expr]] = []
+        match node:
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub(), right=right):
+                pairs = [(left, right)]
+            case ast.AugAssign(target=target, op=ast.Add() | ast.Sub(), value=value):
+                pairs = [(target, value)]
+            case ast.Compare(left=left, comparators=others):
+                pairs = [*zip([left, *others], others, strict=False)]
+            case ast.Call(func=function, args=[angle]) if names.called(function) in _TAKING_RADIANS:
+                if _unit(angle, names, parents) == "degrees":
+                    name = names.called(function)
+                    yield node.lineno, f"{ast.unparse(angle)} is in degrees, and {name} takes radians"
+        line = getattr(node, "lineno", 0)
+        for left, right in pairs:
+            units = {_unit(side, names, parents): side for side in (left, right)}
+            if units.keys() == {"degrees", "radians"}:
+                degrees, radians = (ast.unparse(units[unit]) for unit in ("degrees", "radians"))
+                is_plain = isinstance(units["degrees"], (ast.Name, ast.Attribute))
+                way = f"write math.radians({degrees})" if is_plain else "write both in radians"
+                yield line, f"{degrees} is in degrees, and {radians} in radians; {way}"
+
+
+def _unit(expression: ast.expr, names: PoseNames, parents: Sequence[ast.AST], depth: int = 0) -> Unit:
+    """Return the unit of an angle; empty if it is not seen.
+
+    Args:
+        depth: The number of names that have been followed.
+    """
+    match expression:
+        case ast.Call(func=function) if (name := names.called(function)) in (*_DEGREES, *_RADIANS, *_INVERSE):
+            is_named = any(keyword.arg == "deg" for keyword in expression.keywords)
+            return "" if is_named else "degrees" if name in _DEGREES else "radians"
+        case ast.Call(func=function) if last_name(function) == "Param":
+            given = [
+                k.value.value for k in expression.keywords if k.arg == "unit" and isinstance(k.value, ast.Constant)
+            ]
+            return _UNITS.get(str(given[0]), "") if given else ""
+        case ast.Call(func=ast.Name(id=name), args=[angle]) if name in _SAME:
+            return _unit(angle, names, parents, depth)
+        case ast.UnaryOp(op=ast.USub(), operand=angle):
+            return _unit(angle, names, parents, depth)
+        case ast.BinOp(left=left, op=ast.Add() | ast.Sub(), right=right):
+            units = {_unit(left, names, parents, depth), _unit(right, names, parents, depth)} - {""}
+            return next(iter(units)) if len(units) == 1 else ""
+        case ast.Attribute(value=pose, attr="theta") if names.is_pose(pose, parents):
+            return "radians"
+        case ast.Name() | ast.Attribute() if depth < DEPTH and (isinstance(expression, ast.Name) or is_own(expression)):
+            values = [v for v in names.bindings.of(expression, parents) if not _is_zero(v.expression)]
+            units = {_unit(v, names, around, depth + 1) if v is not None else "" for v, around in values}
+            return next(iter(units)) if len(units) == 1 else ""
+    return ""
+
+
+def _is_zero(value: ast.expr | None) -> bool:
+    """Whether a value stands for none: `None` or 0."""
+    return isinstance(value, ast.Constant) and (value.value is None or value.value in (0, 0.0))

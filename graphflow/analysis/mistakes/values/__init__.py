@@ -1,0 +1,1 @@
+"""Mistakes in assignments, comparisons and conditions; each module finds one kind."""

@@ -1,0 +1,43 @@
+"""Statements after rclpy.spin that are meant to run beside it."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from graphflow.analysis.mistakes.calls.after_spin import after_spin
+
+_PROGRAM = """
+class Mover(Node):
+    def move(self):
+        self.pub.publish(Twist())
+
+    def stop_robot(self):
+        self.pub.publish(Twist())
+
+    def report(self):
+        print(self.count)
+
+def main():
+    node = Mover()
+    rclpy.spin(node)
+    {}
+"""
+
+
+@pytest.mark.parametrize("statement", ["node.move()", "node.pub.publish(Twist())", "node.create_timer(1.0, f)"])
+def test_statements_that_send(statement: str) -> None:
+    """The sentence names both lines."""
+    [(line, text)] = after_spin(ast.parse(_PROGRAM.format(statement)))
+    assert line == 15
+    assert text.startswith(f"{statement.partition('(')[0]} runs only after Ctrl-C, since spin (line 14) returns then")
+
+
+@pytest.mark.parametrize(
+    "statement",
+    ["node.destroy_node()", "node.stop_robot()", "node.report()", "rclpy.shutdown()", "print(node.count)", "move()"],
+)
+def test_statements_for_the_end(statement: str) -> None:
+    """What belongs to the end of a program is left alone."""
+    assert list(after_spin(ast.parse(_PROGRAM.format(statement)))) == []

@@ -1,0 +1,53 @@
+"""Names of a file that stand for turtlesim poses and functions of `math`."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from graphflow.analysis.mistakes.pose_names import pose_names
+from graphflow.analysis.syntax import walk
+
+SOURCE = """\
+from math import atan2
+from turtlesim.msg import Pose
+
+class Robot:
+    def heard(self, pose: Pose, other):
+        self.last = pose
+        {}
+"""
+
+
+def _is_pose(line: str) -> bool:
+    module = ast.parse(SOURCE.format(line))
+    names = pose_names(module)
+    [found] = [names.is_pose(n.value, parents) for n, parents in walk(module) if isinstance(n, ast.Expr)]
+    return found
+
+
+@pytest.mark.parametrize("line", ["pose", "self.last"])
+def test_a_pose(line: str) -> None:
+    """An annotated argument is one, and so is the attribute that keeps it."""
+    assert _is_pose(line)
+
+
+@pytest.mark.parametrize("line", ["other", "self.next", "pose.x"])
+def test_other_names(line: str) -> None:
+    """Other arguments, attributes that nothing sets, and a pose's fields are none."""
+    assert not _is_pose(line)
+
+
+def test_a_file_that_sets_theta() -> None:
+    """It may keep degrees there, so that its poses are not followed."""
+    assert not pose_names(ast.parse(SOURCE.format("other.theta = 90.0"))).poses
+
+
+def test_functions_of_math() -> None:
+    """They are known by an import or by their module, and by nothing else."""
+    names = pose_names(ast.parse(SOURCE.format("...")))
+    called = [
+        names.called(ast.parse(text, mode="eval").body) for text in ("atan2", "math.sin", "np.cos", "sin", "a.sin")
+    ]
+    assert called == ["atan2", "sin", "cos", "", ""]

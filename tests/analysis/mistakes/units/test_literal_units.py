@@ -1,0 +1,39 @@
+"""Numbers in milliseconds and degrees where seconds and radians are taken."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from graphflow.analysis.mistakes.units.literal_units import literal_units
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        ("@timer(500)\ndef f(): ...", "a period is in seconds: the first call comes after 500 s; for 500 ms write 0.5"),
+        ("self.create_timer(100, self.f)", "the first call comes after 100 s; for 100 ms write 0.1"),
+        ("self.create_timer(timer_period_sec=2000, callback=f)", "for 2000 ms write 2"),
+        ("Transform.of('a', 'b', rpy=(0.0, 0, -90))", "rpy is in radians: -90 degrees are -1.571, math.radians(-90)"),
+        ("Spawn.Request(x=1.0, theta=180.0)", "theta is in radians: 180 degrees are 3.142"),
+        ("quaternion_from_euler(0, 0, 45)", "an angle is in radians: 45 degrees are 0.7854"),
+    ],
+)
+def test_numbers_in_another_unit(code: str, told: str) -> None:
+    """The sentence has both values."""
+    [(_, text)] = literal_units(ast.parse(code))
+    assert told in text
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        *("timer(60)", "timer(300)", "timer(3600)", "timer(500.0)", "timer(0.5)", "timer(True)", "timer(rate)"),
+        *("Pose(theta=9.42)", "Pose(theta=5)", "Pose(theta=15.5)", "draw(angle=math.radians(90))", "move(x=90)"),
+        *("self.create_rate(100)", "quaternion_from_euler(0, 0, yaw)"),
+    ],
+)
+def test_numbers_that_may_be_meant(code: str) -> None:
+    """Whole minutes, fractions, small numbers and computed ones are left alone."""
+    assert list(literal_units(ast.parse(code))) == []

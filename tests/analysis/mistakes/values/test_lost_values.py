@@ -1,0 +1,97 @@
+"""Values that nothing receives."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from graphflow.analysis.mistakes.values.lost_values import lost_values
+
+NATIVE = """
+from graphflow.msgs.geometry_msgs.msg import Twist
+
+class Robot(Node):
+    cmd_vel = Publisher(Twist, "cmd_vel")
+    state = "FORWARD"
+
+    @timer(0.1)
+    async def drive(self):
+        {}
+
+    def say(self, given):
+        return self.state
+"""
+RCLPY = """
+from geometry_msgs.msg import Twist
+from std_msgs.msg import String
+
+class Robot(Node):
+    def __init__(self):
+        super().__init__("robot")
+        self.pub = self.create_publisher(Twist, "cmd_vel", 10)
+        self.scan = None
+        self.create_subscription(String, "word", self.drive, 10)
+
+    def drive(self, message):
+        {}
+
+    def say(self):
+        return self.scan
+"""
+LOCAL = "{0} sets a local variable, which nothing reads; write self.{0}"
+DROPS = "drive is called by a {}, which drops the Twist that it returns; write self.{}.publish({})"
+
+
+def _told(source: str, line: str) -> list[str]:
+    return [text for _, text in lost_values(ast.parse(source.format(line)))]
+
+
+@pytest.mark.parametrize(
+    ("source", "line", "told"),
+    [
+        (NATIVE, "state = 'BACK'", LOCAL.format("state = 'BACK'")),
+        (NATIVE, "if self.state: state = 'A' if x.y else 'B'", LOCAL.format("state = 'A' if x.y else 'B'")),
+        (RCLPY, "scan = message", LOCAL.format("scan = message")),
+        (
+            NATIVE,
+            "msg = Twist()\n        msg.linear.x = 2.0\n        return msg",
+            DROPS.format("timer", "cmd_vel", "msg"),
+        ),
+        (RCLPY, "return Twist()", DROPS.format("subscription", "pub", "Twist()")),
+    ],
+)
+def test_lost_values(source: str, line: str, told: str) -> None:
+    """Each is told with its correction."""
+    assert _told(source, line) == [told]
+
+
+@pytest.mark.parametrize(
+    ("source", "line"),
+    [
+        (NATIVE, "self.state = 'BACK'"),
+        (NATIVE, "state = 'BACK'\n        print(state)"),
+        (NATIVE, "state = 'BACK'\n        return lambda: state"),
+        (NATIVE, "state = self.call()"),
+        (NATIVE, "other = 'BACK'"),
+        (NATIVE, "global state\n        state = 'BACK'"),
+        (NATIVE, "state = 'BACK'\n        print('{{state}}'.format(**locals()))"),
+        (NATIVE, "for state in range(3): pass"),
+        (NATIVE, "say = 'BACK'"),
+        (NATIVE, "state = self.state"),
+        (NATIVE, "state = 'BACK'\n        self.state = 'FORWARD'"),
+        (NATIVE, "class Part:\n            state = 'BACK'"),
+        (NATIVE, "msg = Twist()\n        self.cmd_vel.publish(msg)\n        return msg"),
+        (NATIVE, "self.cmd_vel.publish(Twist())\n        return Twist()"),
+        (NATIVE, "msg = Twist()\n        self.last = msg\n        return msg"),
+        (NATIVE, "return None"),
+        (NATIVE, "return self.make()"),
+        (NATIVE, "return Twist()\n\n    async def again(self):\n        self.cmd_vel.publish(await self.drive())"),
+        (RCLPY, "return Twist()\n\n    def again(self):\n        self.pub.publish(self.drive(None))"),
+        (RCLPY, "return 1"),
+        (RCLPY, "message = 1\n        return message"),
+    ],
+)
+def test_values_that_are_received(source: str, line: str) -> None:
+    """Nothing is told of variables that are read, messages that are published, and handlers that other lines call."""
+    assert _told(source, line) == []
