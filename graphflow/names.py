@@ -8,7 +8,7 @@ Source: ROS 2 design articles "Topic and Service name mapping" and "Static remap
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Literal
@@ -39,12 +39,20 @@ def nearest(word: str, choices: Iterable[str], *, cutoff: float = 0.6) -> str | 
     return found[0] if found else None
 
 
-def whole_rule(match: str, replacement: str, known: Iterable[str]) -> str:
-    """Return a hint for a remap rule of only the first part of names, as `turtle1:=turtle2`; empty for other rules.
+_KEYS = {"ns": "__ns", "namespace": "__ns", "name": "__node", "node": "__node"}
+"""Words that are written for the keys of a node's namespace and name."""
+
+
+def rule_hint(match: str, replacement: str, known: Collection[str]) -> str:
+    """Return a hint for a remap rule that matches no name of a node; empty if its purpose is not seen.
 
     Args:
         known: The names of the node.
     """
+    if match in _KEYS:
+        return f"; did you mean {_KEYS[match]}:={replacement}?"
+    if nearest(match, known) is None and (replacement in known or f"/{replacement}" in known):
+        return f"; it is the other way round, from the node's name: {replacement}:={match}"
     head = match.strip("/") + "/"
     found = next((name for name in known if head != "/" and name.removeprefix("/").startswith(head)), None)
     if found is None:
@@ -154,8 +162,8 @@ def expand(name: str, namespace: str, node: str) -> str:
         InvalidName: The result is not a legal name.
     """
     text = _SUBSTITUTION.sub(lambda m: _substitute(m.group(1), name, namespace, node), name)
-    if namespace == "/" and text.startswith("//"):  # {ns}/a at the root
-        text = text[1:]
+    if namespace == "/" and name.startswith("{"):  # {ns}/a at the root
+        text = text.replace("//", "/", 1)
     if text == "~":
         text = join(namespace, node)
     elif text.startswith("~/"):
@@ -219,7 +227,7 @@ class Remap:
                 match, kind = match.removeprefix(scheme), meant  # type: ignore[assignment]
         if match.startswith("__") and match not in ("__ns", "__node", "__name"):
             known = ("__ns", "__node", "__name")
-            near = nearest(match, known)
+            near = _KEYS.get(match.strip("_")) or nearest(match, known)
             meant = f"; did you mean '{near}:={replacement}'?" if near else did_you_mean(match, known)
             raise InvalidName(f"{match!r} is not a remap key{meant}")
         return cls(match, replacement, node, kind, source)
@@ -346,3 +354,9 @@ class Resolver:
     def unused(self) -> list[Remap]:
         """Return the rules for this node that have matched none of its names so far."""
         return [rule for rule in self.rules if rule not in self.used]
+
+    def taken_by(self, rule: Remap) -> Remap | None:
+        """Return the earlier rule that has matched a name which a rule matches, too; None if there is none."""
+        pattern = self.pattern(rule.match)
+        taken = (found.rule for found in self.derivations.values() if pattern.fullmatch(found.expanded))
+        return next((other for other in taken if other not in (None, rule)), None)

@@ -20,8 +20,8 @@ from graphflow.names import (
     is_hidden,
     join,
     nearest,
+    rule_hint,
     split,
-    whole_rule,
 )
 
 
@@ -164,6 +164,8 @@ def test_the_namespace_is_substituted(word: str) -> None:
         ("~a", "'~a' may have"),
         ("a/~", "'~' may have"),
         ("a//b", "has // in it"),
+        ("//a", "has // in it"),
+        ("//", "it ends with /"),
         ("2a", "'2a' may have"),
         ("a b", "may have only"),
         ("/spawn x/srv/Spawn {x: 1}", "has spaces in it; the name ends at '/spawn', so write the name alone"),
@@ -451,5 +453,37 @@ def test_wildcards_that_are_wrong(rule: str, message: str) -> None:
 def test_rules_of_the_first_part_of_names(rule: str, meant: str) -> None:
     """The rule that was meant has a whole name."""
     match, _, replacement = rule.partition(":=")
-    found = whole_rule(match, replacement, ["pose", "turtle1/cmd_vel", "turtle1/pose", "/arm/left/pose"])
+    found = rule_hint(match, replacement, ["pose", "turtle1/cmd_vel", "turtle1/pose", "/arm/left/pose"])
     assert found == (f"; a rule has whole names: {meant}" if meant else "")
+
+
+@pytest.mark.parametrize(
+    ("rule", "hint"),
+    [
+        ("ns:=/turtle1", "; did you mean __ns:=/turtle1?"),
+        ("name:=my", "; did you mean __node:=my?"),
+        ("/output:=pose", "; it is the other way round, from the node's name: pose:=/output"),
+        ("x:=arm/left/pose", "; it is the other way round, from the node's name: arm/left/pose:=x"),
+    ],
+)
+def test_rules_with_another_meaning(rule: str, hint: str) -> None:
+    """The keys of a node's own name lack their underscores, or the sides are exchanged."""
+    match, _, replacement = rule.partition(":=")
+    assert rule_hint(match, replacement, ["pose", "/arm/left/pose"]) == hint
+
+
+def test_a_misspelt_key() -> None:
+    """The meaning counts more than the likeness."""
+    with pytest.raises(InvalidName, match="did you mean '__ns:=/turtle1'"):
+        Remap.parse("__namespace:=/turtle1")
+
+
+def test_a_name_that_an_earlier_rule_has_renamed() -> None:
+    """The earlier rule is known; a rule is not in its own way."""
+    first, second = rules("/a:=b", "a:=c")
+    names = Resolver("node", "/", [first, second])
+    assert names.taken_by(second) is None
+    names.resolve("a")
+    assert names.unused() == [second]
+    assert names.taken_by(second) == first
+    assert names.taken_by(first) is None

@@ -87,7 +87,7 @@ class View:
             return wanted
         visible = self.cache.nodes(hidden=False)
         why = self.cache.instead(wanted, visible) or self._empty(visible)
-        raise CallError(f"there is no node {wanted}{why}{_stopped()}")
+        raise CallError(f"there is no node {wanted}{why}{self._stopped()}")
 
     def _empty(self, names: Iterable[str]) -> str:
         return "" if names else self.nobody_here() or f"; domain {self.domain} has no nodes"
@@ -103,7 +103,7 @@ class View:
         if not nodes or self.cache.endpoints(Kind.PUBLISHER, topic):
             return ""
         verb = "subscribes" if len(nodes) == 1 else "subscribe"
-        return f"; {' and '.join(nodes[:TAKEN_SHOWN])} {verb} to it, and nothing publishes it{_stopped()}"
+        return f"; {' and '.join(nodes[:TAKEN_SHOWN])} {verb} to it, and nothing publishes it{self._stopped()}"
 
     def service_types(self, name: str) -> list[str]:
         """Return the types of an offered service: several, if nodes announce different ones.
@@ -117,7 +117,7 @@ class View:
         client = any(e.kind is Kind.CLIENT for e in self.cache.named(name))
         offered = self.cache.offered()
         near = did_you_mean(name, *offered) if client else self.cache.instead(name, *offered)
-        raise ServiceUnavailable(f"no node offers the service {name}{near or self.nobody_here()}{_stopped()}")
+        raise ServiceUnavailable(f"no node offers the service {name}{near or self.nobody_here()}{self._stopped()}")
 
     def wait_for_service(self, name: str, timeout: float) -> None:
         """Wait until a node offers the service.
@@ -155,7 +155,7 @@ class View:
         try:
             reply = self._client.call(key, request.to_bytes(), beside, timeout)
         except TimeoutError:
-            raise CallTimeout(f"{name} did not answer within {timeout:g} s{_stopped()}") from None
+            raise CallTimeout(f"{name} did not answer within {timeout:g} s{self._stopped()}") from None
         if reply is None:
             raise ServerLost(self._no_answer(name, type_name, registry.hash_of(type_name)))
         if reply.is_error:
@@ -253,12 +253,11 @@ class View:
         if kept_back := self.kept_back(name, Kind.SERVICE):
             return kept_back
         other = ", or the net profile of the other machine does not pass the call" if self.profiles() else ""
-        return f"{name}: the server went away before it answered{other}{_stopped()}"
+        return f"{name}: the server went away before it answered{other}{self._stopped()}"
 
-
-def _stopped() -> str:
-    """Describe stopped processes (SIGSTOP), which the router has forgotten by now, to append to an error."""
-    return "".join(f"; {text}" for text in list(process.stopped().values())[:STOPPED_SHOWN])
+    def _stopped(self) -> str:
+        """Describe stopped processes (SIGSTOP), which the router has forgotten by now, to append to an error."""
+        return "".join(f"; {text}" for text in list(process.stopped(self.domain).values())[:STOPPED_SHOWN])
 
 
 def refuse_taken_names(names: Iterable[str], domain: int, hint: str = "rename the node in the graph file") -> None:

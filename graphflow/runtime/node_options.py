@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 from graphflow.errors import DeclarationError
 from graphflow.interface import may_make
 from graphflow.machines.regrouping import Regrouping
-from graphflow.names import Remap, Resolver, did_you_mean, whole_rule
+from graphflow.names import Remap, Resolver, did_you_mean, rule_hint
 from graphflow.runtime.args import is_number_or_truth
 from graphflow.runtime.callables import code_of
 from graphflow.runtime.mistakes.slow_hooks import warn_slow_init
@@ -135,6 +135,9 @@ def unused_remaps(
         name = rule.match[1:] if rule.match.startswith("_") else rule.match  # ROS 1's syntax for a parameter
         is_param = name in parameters
         set_by = f"-p {name}:={rule.replacement}"
-        hint = f"; to set the parameter write {set_by}" if is_param else whole_rule(rule.match, rule.replacement, known)
+        if (former := names.taken_by(rule)) is not None:
+            yield f"the remap {rule} comes too late: {former} has renamed {rule.match} already; remove one of the two"
+            continue
+        hint = f"; to set the parameter write {set_by}" if is_param else rule_hint(rule.match, rule.replacement, known)
         hint = hint or did_you_mean(rule.match, known)
         yield f"the remap {rule} matches no name of this node{hint}"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from typing import NamedTuple
 
+from graphflow.domain import DOMAIN_VARIABLES, ENDPOINT_VARIABLE
 from graphflow.system import host_name, user_id
 from graphflow.wire.liveliness import TOKEN_BOUND, whole_number
 
@@ -75,8 +76,8 @@ def is_stopped(pid: int) -> bool:
     return _state(pid) in ("T", "t")
 
 
-def stopped() -> dict[int, str]:
-    """Describe the stopped processes of this machine that may belong to this graph, by pid, each with its next step.
+def stopped(domain: int) -> dict[int, str]:
+    """Describe the stopped processes of this machine that may be in a domain, by pid, each with its next step.
 
     The network forgets a process that does not answer for some seconds; Linux still lists it.
     """
@@ -84,7 +85,7 @@ def stopped() -> dict[int, str]:
     for pid in sorted(int(name) for name in _listed("/proc") if name.isdecimal()):
         try:
             # Whatever its program: each process of a graph has Zenoh's library in memory.
-            if is_stopped(pid) and b"zenoh" in _bytes(f"/proc/{pid}/maps") and _rendezvous_of(pid) == _rendezvous():
+            if is_stopped(pid) and b"zenoh" in _bytes(f"/proc/{pid}/maps") and _is_in(domain, pid):
                 command = _bytes(f"/proc/{pid}/cmdline").replace(b"\0", b" ").decode(errors="replace").strip()
                 found[pid] = f"process {pid}, {command}, is stopped: kill -CONT {pid}"
         except OSError:  # it has ended, or belongs to another user
@@ -99,13 +100,12 @@ def _listed(folder: str) -> list[str]:
         return []
 
 
-def _rendezvous_of(pid: int) -> str:
-    variables = _bytes(f"/proc/{pid}/environ").split(b"\0")
-    return next((os.fsdecode(v.partition(b"=")[2]) for v in variables if v.startswith(b"GRAPHFLOW_RENDEZVOUS=")), "")
-
-
-def _rendezvous() -> str:
-    return os.environ.get("GRAPHFLOW_RENDEZVOUS", "")
+def _is_in(domain: int, pid: int) -> bool:
+    """Whether a process was started with a domain, and with the rendezvous of this one."""
+    lines = (os.fsdecode(line).partition("=") for line in _bytes(f"/proc/{pid}/environ").split(b"\0"))
+    variables = {name: value.strip() for name, _, value in lines}
+    its = next((variables[name] for name in DOMAIN_VARIABLES if variables.get(name)), "0")
+    return its == str(domain) and variables.get(ENDPOINT_VARIABLE, "") == os.environ.get(ENDPOINT_VARIABLE, "")
 
 
 def _state(pid: int) -> str:

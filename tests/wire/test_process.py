@@ -55,25 +55,27 @@ def test_a_process_is_named_with_its_host_where_that_is_another() -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems do not tell")
 def test_stopped_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Stopped processes that have loaded Zenoh and use the same rendezvous are listed, with their commands."""
+    """Those that have loaded Zenoh and use the same rendezvous and domain are listed, with their commands."""
     library = tmp_path / "libzenoh.so"
     library.write_bytes(bytes(4096))
     opened = f"f = open({os.fspath(library)!r}, 'r+b'); m = mmap.mmap(f.fileno(), 0)"
     code = f"import mmap, time; {opened}; print(); time.sleep(60)"
     monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", "tcp/127.0.0.1:1")
     command = [sys.executable, "-u", "-c", code]
-    environments = [os.environ.copy(), os.environ | {"GRAPHFLOW_RENDEZVOUS": "tcp/127.0.0.1:2"}]
+    monkeypatch.setenv("GRAPHFLOW_DOMAIN", "7")
+    others = {"GRAPHFLOW_RENDEZVOUS": "tcp/127.0.0.1:2"}, {"GRAPHFLOW_DOMAIN": "8"}
+    environments = [os.environ.copy(), *(os.environ | other for other in others)]
     started = [subprocess.Popen(command, env=env, stdout=subprocess.PIPE) for env in environments]
     try:
         for one in started:
             assert one.stdout is not None
             one.stdout.readline()
-        assert process.stopped() == {}
+        assert process.stopped(7) == {}
         for one in started:
             one.send_signal(signal.SIGSTOP)
             os.waitid(os.P_PID, one.pid, os.WSTOPPED)
         first = started[0].pid
-        [(pid, text)] = process.stopped().items()
+        [(pid, text)] = process.stopped(7).items()
         assert (pid, text.startswith(f"process {first}, {sys.executable} -u -c ")) == (first, True)
         assert text.endswith(f", is stopped: kill -CONT {first}")
     finally:

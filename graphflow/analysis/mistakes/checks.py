@@ -32,7 +32,6 @@ IN_CODE: Final[tuple[Callable[[ast.AST], Found], ...]] = (
     ineffective,
     defined_twice,
     partial(results_passed, is_of_threads=True),
-    literal_units,
     reused_objects,
     angles_as_quaternions,
     busy_loops,
@@ -47,6 +46,7 @@ IN_FILES: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     lost_values,
     never_exact,
     contrary_names,
+    literal_units,
     wrong_scale,
 )
 """Checks that also read the imports and names of the whole file."""

@@ -16,6 +16,7 @@ from graphflow.analysis.mistakes.calls.cancelled_futures import cancelled_future
 from graphflow.analysis.mistakes.calls.misgiven import misgiven
 from graphflow.analysis.mistakes.calls.misplaced import replaced_methods
 from graphflow.analysis.mistakes.calls.mixed_interfaces import mixed_interfaces
+from graphflow.analysis.mistakes.calls.single_spins import single_spins
 from graphflow.analysis.mistakes.checks import IN_CODE, IN_FILES, Found
 from graphflow.analysis.mistakes.values.message_values import message_values, subscribed
 from graphflow.analysis.mistakes.values.names_in_pairs import names_in_pairs
@@ -32,6 +33,7 @@ _IN_PROGRAMS: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     mixed_interfaces,
     old_parameters,
     names_in_pairs,
+    single_spins,
 )
 """Checks of programs for rclpy alone."""
 

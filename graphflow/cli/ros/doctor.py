@@ -122,7 +122,7 @@ def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
     managed = supervised(view.cache.nodes())
     silent = concurrency.unresponsive(read, view)
     reported = " ".join([*silent, *managed.faults])
-    silent += [text for pid, text in stopped().items() if not re.search(rf"\b{pid}\b", reported)]
+    silent += [text for pid, text in stopped(view.domain).items() if not re.search(rf"\b{pid}\b", reported)]
     faults = {
         "deadlocks": read.reports,
         "stalls": read.stalls,
@@ -146,7 +146,7 @@ def _graph(view: View, first: Look) -> tuple[Findings, Findings, int]:
     )
     notes = {
         "late": late,
-        "hints": [*health.hints, *lifecycles.hints],
+        "hints": [*health.hints, *lifecycles.hints, *managed.ended],
         "silent": others,
         "unreadable": unread,
         "unseen": [*managed.unseen, *_unknown(lifecycles.unknown)],

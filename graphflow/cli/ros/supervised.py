@@ -1,4 +1,4 @@
-"""Node states from this machine's supervisors, for `graphflow doctor`: they know more than the network shows."""
+"""Node states from this machine's supervisors, which know more than the network shows."""
 
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ class Supervised(NamedTuple):
     """Faults and notes from supervisors."""
 
     faults: list[str]
+    ended: list[str]
+    """Notes on nodes of running graphs that have ended."""
     unseen: list[str]
     """Notes on running nodes that cannot be seen on the network from here."""
 
@@ -35,7 +37,7 @@ def supervised(seen: Collection[str]) -> Supervised:
     Args:
         seen: Nodes that the network shows.
     """
-    found = Supervised([], [])
+    found = Supervised([], [], [])
     for run in rundir.running():
         if not run.is_here:
             continue
@@ -46,6 +48,7 @@ def supervised(seen: Collection[str]) -> Supervised:
             found.faults.append(f"the supervisor of graph {run.graph} (process {run.pid}) does not answer{resume}")
             continue
         found.faults.extend(faults(rows))
+        found.ended.extend(ended(rows))
         found.unseen.extend(unseen(rows, seen))
     return found
 
@@ -61,6 +64,12 @@ def faults(rows: Iterable[NodeRow]) -> list[str]:
             why = row["detail"] or "its log says why"
             found.append(f"{row['node']} {_UNWELL[row['state']]}: {why}: graphflow logs {row['node']}")
     return found
+
+
+def ended(rows: Iterable[NodeRow]) -> list[str]:
+    """Describe nodes that have ended, normally or by `graphflow stop`."""
+    names = [row["node"] for row in rows if row["state"] == "ended"]
+    return [f"{name} has ended; to start it again: graphflow start {name}" for name in names]
 
 
 def unseen(rows: Iterable[NodeRow], seen: Collection[str]) -> list[str]:

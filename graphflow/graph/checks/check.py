@@ -32,7 +32,12 @@ Interfaces = Mapping[str, Interface | ImportFault]
 def check(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     """Return all problems of a plan, in the order of its file."""
     problems: list[Problem] = []
+    told: set[str] = set()
     for node in plan.nodes:
+        fault = interfaces.get(node.class_path)
+        if isinstance(fault, Problem) and fault.message in told:
+            continue  # a module that cannot be imported is one fault, however many nodes are of it
+        told |= {fault.message} if isinstance(fault, Problem) else set()
         problems += _check_program(node) if node.command else _check_node(node, interfaces)
     problems += _check_lifecycle(plan, interfaces)
     problems += _check_optional(plan, interfaces)

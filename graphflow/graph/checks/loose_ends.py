@@ -62,6 +62,7 @@ def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
         return classes
     ends = [end for node in plan.nodes for end in _ends(node, interfaces)]
     made = [interface.dynamic_names for interface in known]
+    classes += (problem for node in plan.nodes for problem in _of_loops(node, interfaces))
     found = [*_of_steps(plan, ends), *_of_nodes(ends), *odd_panes(plan.panes, _by_kind(plan, ends))]
     return classes + [problem for name, problem in found if not any(may_make(names, name) for names in made)]
 
@@ -102,6 +103,26 @@ def _ends(node: PlannedNode, interfaces: Interfaces) -> Iterator[_End]:
         name, full = names.resolve(endpoint.name, kind), names.full(endpoint.name)
         rules = (rule.place for rule in node.remaps if name != full and names.pattern(rule.match).fullmatch(full))
         yield _End(endpoint.kind, name, endpoint.type, next(rules, None), endpoint.place)
+
+
+def _of_loops(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
+    """Yield a remap by which a node hears itself; most have their sides exchanged."""
+    interface = interfaces[node.class_path]
+    assert isinstance(interface, Interface)
+    names = resolver(node)
+    topics = [end for end in interface.endpoints if end.kind in ("publisher", "subscription")]
+    before = {end.name: names.full(end.name) for end in topics}
+    sent, heard = ({before[e.name] for e in topics if e.kind == kind} for kind in ("publisher", "subscription"))
+    for rule in node.remaps:
+        of_rule = [name for name in sent | heard if names.pattern(rule.match).fullmatch(name)]
+        for name in of_rule if len(of_rule) == 1 else ():
+            after = names.resolve(name)
+            if (name in sent and after in heard - sent) or (name in heard and after in sent - heard):
+                own = next(given for given, full in before.items() if full == after)
+                text = f"by this remap {node.name} hears its own messages on {after}"
+                way = f"a remap has the node's name first: did you mean {own}: {rule.match}?"
+                yield Problem(rule.place, f"{text}; {way}")
+                return
 
 
 def _of_steps(plan: Plan, ends: list[_End]) -> Iterator[tuple[str, Problem]]:

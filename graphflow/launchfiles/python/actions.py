@@ -137,7 +137,10 @@ def _timer(call: RecordedCall) -> Action:
 
 
 def _include(call: RecordedCall) -> Action:
-    arguments = dict(call.get("launch_arguments", default=None) or {})
+    given = call.get("launch_arguments", default=None) or {}
+    if isinstance(given, dict):  # ROS 2 unpacks each name as if it were a pair, and fails
+        RECORDING.problem(call, f"{call.kind}: launch_arguments is a list of pairs: write .items() behind the dict")
+    arguments = dict(given)
     pairs: list[Data] = [{"name": text(key), "value": text(value)} for key, value in arguments.items()]
     return Action("include", {"file": text(call.get("launch_description_source", 0)), "arg": pairs})
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from graphflow.cli.ros import supervised
-from graphflow.cli.ros.supervised import faults, unseen
+from graphflow.cli.ros.supervised import ended, faults, unseen
 from tests.cli.rows import node_row
 
 
@@ -37,3 +37,9 @@ def test_nodes_that_the_network_does_not_show() -> None:
     rows = [node_row("/a"), node_row("/b"), node_row("/c", "starting"), node_row("/program", is_named=False)]
     assert unseen(rows, ["/a"]) == ["not seen on the network, although ready for their supervisor: /b"]
     assert unseen(rows, ["/a", "/b"]) == []
+
+
+def test_nodes_that_have_ended() -> None:
+    """They are told with the way to start them again."""
+    rows = [node_row("/a"), node_row("/b", "ended", pid=None)]
+    assert ended(rows) == ["/b has ended; to start it again: graphflow start /b"]

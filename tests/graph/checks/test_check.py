@@ -304,6 +304,13 @@ def test_a_service_may_be_of_a_class_that_is_not_known() -> None:
     assert len(problems(text, {"a.b:Any": fault})) == 1
 
 
+def test_a_module_that_cannot_be_imported_is_told_once() -> None:
+    """However many nodes are of its classes; another fault is told beside it."""
+    text = "nodes:\n  a: {class: a.b:Any}\n  b: {class: a.b:Any}\n  c: {class: c.d:Any}\n"
+    one, other = (Problem(Place(""), f"cannot import {name}: there is no module") for name in ("a.b", "c.d"))
+    assert [found[:4] for found in problems(text, {"a.b:Any": one, "c.d:Any": other})] == ["2:14", "4:14"]
+
+
 def test_services_go_by_their_remapped_names() -> None:
     """A type is found under the name that the service will have."""
     found = plan(STEP.format("{call: /hatch}"))

@@ -35,9 +35,15 @@ LISTENER = Interface(
     endpoints=(endpoint("subscription", "chatter", STRING), endpoint("client", "spawn", TRIGGER)),
 )
 SLIPPED = Interface("a:Slipped", "slipped", CODE, endpoints=(endpoint("subscription", "chater", STRING),))
+ADDER = Interface(
+    "a:Adder",
+    "adder",
+    CODE,
+    endpoints=(endpoint("publisher", "output", STRING), endpoint("subscription", "input", STRING)),
+)
 NUMBERED = Interface("a:Numbered", "numbered", CODE, endpoints=(endpoint("subscription", "chatter2", STRING),))
 ANY = Interface("a:Any", "any", CODE, dynamic_names=("/chater",))
-KNOWN: Interfaces = {i.class_path: i for i in (TALKER, LISTENER, SLIPPED, NUMBERED, ANY)}
+KNOWN: Interfaces = {i.class_path: i for i in (TALKER, LISTENER, SLIPPED, NUMBERED, ANY, ADDER)}
 GRAPH = "nodes:\n  /t: {class: a:Talker}\n  /l: {class: a:Listener}\n"
 
 
@@ -67,6 +73,15 @@ def test_a_remap_to_a_name_that_nobody_has(rule: str, expected: str) -> None:
     """At the rule; the nearest name is offered unless only a number tells the two apart."""
     text = GRAPH.replace("a:Listener", f"a:Listener, remap: {{{rule}}}")
     assert told(text) == [f"g.yaml:3:{text.splitlines()[2].index(rule) + 1}: {expected}"]
+
+
+def test_a_remap_that_joins_a_node_with_itself() -> None:
+    """It is told with the two sides exchanged; other names are left alone."""
+    text = "nodes:\n  /a: {class: a:Adder, remap: {/output: input}}\n"
+    way = "a remap has the node's name first: did you mean input: /output?"
+    assert told(text) == [f"g.yaml:2:32: by this remap /a hears its own messages on /input; {way}"]
+    for rule in ("input: /output2, output: /output3", "output: /elsewhere", "output: /input2"):
+        assert "hears its own" not in "".join(told(text.replace("/output: input", rule)))
 
 
 def test_a_publisher_may_have_no_listener_but_not_a_misspelt_one() -> None:

@@ -215,3 +215,16 @@ def test_a_text_that_is_set_for_all_stays_one() -> None:
     settings = [said("SetParameter", "a", value) for value in ("0042", said("LaunchConfiguration", "x"), 2)]
     found = [action["set_parameter"] for action in actions(settings)]
     assert [(one["value"], one.get("type")) for one in found] == [("0042", "str"), ("$(var x)", None), (2, None)]
+
+
+def test_arguments_that_are_no_pairs(problems: list[Finding]) -> None:
+    """A dict is refused with the way to pass it, as ROS 2 fails on it; its items are pairs."""
+    source = "other.launch.py"
+    expected = [{"include": {"file": source, "arg": [{"name": "x", "value": "6.0"}], "line": 7}}]
+    right = said("IncludeLaunchDescription", source, launch_arguments={"x": "6.0"}.items())
+    wrong = said("IncludeLaunchDescription", source, launch_arguments={"x": "6.0"})
+    assert actions([right]) == expected
+    assert problems == []
+    actions([wrong])
+    [problem] = problems
+    assert problem["message"].endswith("launch_arguments is a list of pairs: write .items() behind the dict")

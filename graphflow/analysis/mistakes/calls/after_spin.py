@@ -1,4 +1,4 @@
-"""Statements after `rclpy.spin(node)` that are meant to run while the node does."""
+"""Statements after `rclpy.spin(node)` that are meant to run while the node does, or when a future is done."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _IS_LAST = re.compile(r"stop|halt|brake|shut|close|clean|destroy|finish|exit|qui
 
 
 def after_spin(module: ast.AST) -> Iterator[tuple[int, str]]:
-    """Find the lines after `rclpy.spin` that send or create something; each comes with a sentence."""
+    """Find the lines after `rclpy.spin` that send or create something, or read a result; each comes with a sentence."""
     sending = {
         method.name
         for method in ast.walk(module)
@@ -29,13 +29,34 @@ def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]
     spun = next((i for i, s in enumerate(body) if _spins(s)), None)
     if spun is None:
         return
+    line = body[spun].lineno
+    futures = {name for statement in body[:spun] for name in _assigned(statement)}
     for statement in body[spun + 1 :]:
+        if read := next((name for name in _results(statement) if name in futures), None):
+            text = f"{read}.result() runs only after Ctrl-C, since spin (line {line}) returns then"
+            yield statement.lineno, f"{text}; write rclpy.spin_until_future_complete(node, {read}) in line {line}"
+            return
         match statement:
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr=name) as function) as call):
                 is_sent = _sends(call) or (isinstance(owner, ast.Name) and name in sending)
                 if is_sent and not _IS_LAST.match(name):
-                    text = f"{ast.unparse(function)} runs only after Ctrl-C, since spin (line {body[spun].lineno})"
+                    text = f"{ast.unparse(function)} runs only after Ctrl-C, since spin (line {line})"
                     yield statement.lineno, f"{text} returns then; call it before spin, or in a callback of a timer"
+
+
+def _assigned(statement: ast.stmt) -> Iterator[str]:
+    """Yield the names that a statement binds to what a call returns."""
+    match statement:
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call()):
+            yield name
+
+
+def _results(statement: ast.stmt) -> Iterator[str]:
+    """Yield the names whose `result()` a statement calls."""
+    for node in ast.walk(statement):
+        match node:
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="result"), args=[]):
+                yield name
 
 
 def _spins(statement: ast.stmt) -> bool:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from functools import cache
 
-from graphflow.analysis.syntax import last_name
+from graphflow.analysis.bindings import Bindings, bindings_of
+from graphflow.analysis.syntax import last_name, walk
 
 _PERIODS = {"timer", "create_timer", "every", "create_rate"}
 """Functions whose first argument is a period in seconds."""
@@ -19,15 +21,19 @@ _LEAST_DEGREES = 10
 """Whole numbers from here on count as degrees: in radians they would be more than a turn and a half."""
 
 
-def literal_units(module: ast.AST) -> Iterator[tuple[int, str]]:
-    """Find the lines with such numbers; each comes with a sentence."""
-    for node in ast.walk(module):
+@cache
+def literal_units(module: ast.Module) -> tuple[tuple[int, str], ...]:
+    """Return the lines with such numbers; each comes with a sentence."""
+    found: list[tuple[int, str]] = []
+    bindings = bindings_of(module)
+    for node, parents in walk(module):
         if isinstance(node, ast.Call):
-            yield from _of_period(node)
-            yield from _of_angles(node)
+            found += _of_period(node, bindings, parents)
+            found += _of_angles(node)
+    return tuple(found)
 
 
-def _of_period(call: ast.Call) -> Iterator[tuple[int, str]]:
+def _of_period(call: ast.Call, bindings: Bindings, parents: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
     name = last_name(call.func)
     if name not in _PERIODS or name == "create_rate":
         return
@@ -36,12 +42,21 @@ def _of_period(call: ast.Call) -> Iterator[tuple[int, str]]:
         *(keyword.value for keyword in call.keywords if keyword.arg in ("period", "timer_period_sec")),
     ]
     for value in given:
-        match value:
-            case ast.Constant(value=int(ms)) if (
-                not isinstance(ms, bool) and ms >= _LEAST_MS and ms % _STEP_MS == 0 and ms % _MINUTE
-            ):
-                text = f"a period is in seconds: the first call comes after {ms} s; for {ms} ms write {ms / 1000:g}"
-                yield value.lineno, text
+        bound = [found.expression for found in bindings.of(value, parents)]
+        numbers = {_milliseconds(found) for found in bound or [value]}
+        ms = numbers.pop()
+        if ms is not None and not numbers:
+            shown = f"{ast.unparse(value)} is {ms}, and " if bound else ""
+            text = f"{shown}a period is in seconds: the first call comes after {ms} s; for {ms} ms write {ms / 1000:g}"
+            yield value.lineno, text
+
+
+def _milliseconds(value: ast.expr | None) -> int | None:
+    """Return a number that seems to be in milliseconds, or None."""
+    match value:
+        case ast.Constant(value=int(ms)) if not isinstance(ms, bool):
+            return ms if ms >= _LEAST_MS and ms % _STEP_MS == 0 and ms % _MINUTE else None
+    return None
 
 
 def _of_angles(call: ast.Call) -> Iterator[tuple[int, str]]:

@@ -41,3 +41,19 @@ def test_statements_that_send(statement: str) -> None:
 def test_statements_for_the_end(statement: str) -> None:
     """What belongs to the end of a program is left alone."""
     assert list(after_spin(ast.parse(_PROGRAM.format(statement)))) == []
+
+
+@pytest.mark.parametrize("use", ["response = future.result()", "print(future.result().sum)"])
+def test_the_result_of_a_future(use: str) -> None:
+    """The sentence has the call that returns when the future is done."""
+    program = _PROGRAM.replace("    rclpy.spin", "    future = node.send()\n    rclpy.spin").format(use)
+    [(line, text)] = after_spin(ast.parse(program))
+    assert line == 16
+    assert text.startswith("future.result() runs only after Ctrl-C, since spin (line 15) returns then")
+    assert text.endswith("write rclpy.spin_until_future_complete(node, future) in line 15")
+
+
+def test_a_future_of_the_end() -> None:
+    """One that is made after spin is awaited there in another way."""
+    program = _PROGRAM.format("future = node.end()\n    print(future.result())")
+    assert list(after_spin(ast.parse(program))) == []

@@ -149,6 +149,10 @@ class LifecycleNodeMixin(ManagedEntity):
         self._graphflow_go(transition)
         outcome = self._graphflow_run_hook(former)
         self._graphflow_go(after(machine.state, outcome))
+        if machine.state is State.ACTIVE:
+            for entity in self._managed_entities:
+                if isinstance(entity, LifecyclePublisher):
+                    entity.check_activated()
         if machine.state is State.ERRORPROCESSING:
             # `on_error` gets the state in which the transition began, not the error state.
             self._graphflow_go(after(machine.state, self._graphflow_run_hook(former)))

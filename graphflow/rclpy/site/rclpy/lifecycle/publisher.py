@@ -45,8 +45,21 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
         self._graphflow_has_warned = False
         return super().on_activate(state)
 
+    def check_activated(self) -> None:
+        """Warn if the node has just become active, but not the publisher: programs may ask it before they publish.
+
+        graphflow's own.
+        """
+        if not self.is_activated:
+            self._graphflow_tell(f"the publisher of '{self.topic_name}' is not activated, and sends nothing")
+
     def _graphflow_warn(self, msg: Any) -> None:
-        """Warn, with rclcpp's text, that a message is not sent; once per deactivation."""
+        """Warn, with rclcpp's text, that a message is not sent."""
+        text = f"Trying to publish message on the topic '{self.topic_name}', but the publisher is not activated"
+        self._graphflow_tell(text)
+
+    def _graphflow_tell(self, text: str) -> None:
+        """Warn with the cause; once per deactivation."""
         node, machine = self._graphflow_node(), self._graphflow_machine
         if node is None or machine is None or self._graphflow_has_warned:
             return
@@ -59,9 +72,7 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
             why = f"it was created while {name} was active: create it in on_configure"
         elif state is State.ACTIVE:
             why = f"{described(node.on_activate)} has to end with return super().on_activate(state), which activates it"
-        node.get_logger().warning(
-            f"Trying to publish message on the topic '{self.topic_name}', but the publisher is not activated: {why}"
-        )
+        node.get_logger().warning(f"{text}: {why}")
 
     @SimpleManagedEntity.when_enabled(when_not_enabled=_graphflow_warn)
     def publish(self, msg: Any) -> None:

@@ -54,16 +54,17 @@ class Silent(LifecycleNode):
 
 
 def test_an_activation_without_super(capfd: pytest.CaptureFixture[str]) -> None:
-    """As in ROS 2, the publisher sends nothing; the warning names the callback and its missing line."""
+    """As in ROS 2, the publisher sends nothing; one warning at once names the callback and its missing line."""
     rclpy.init()
     node = Silent("lamp")
     publisher = node.create_lifecycle_publisher(String, "light", 1)
     node.trigger_configure()
     node.trigger_activate()
+    warning = capfd.readouterr().err
     publisher.publish(String())
     assert not publisher.is_activated
-    warning = capfd.readouterr().err
-    assert "not activated: on_activate (" in warning
+    assert capfd.readouterr().err == ""
+    assert "the publisher of '/light' is not activated, and sends nothing: on_activate (" in warning
     assert "test_publisher.py:51) has to end with return super().on_activate(state), which activates it" in warning
 
 

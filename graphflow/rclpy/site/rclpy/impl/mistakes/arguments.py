@@ -68,14 +68,15 @@ def explained(call: Callable[P, T]) -> Callable[P, T]:
                 given = signature.bind_partial(*args, **kwargs).arguments
             except TypeError:
                 raise error.with_traceback(None) from None
-            fault = _fault(name, {word: given[word] for word in needed if word in given}, needed)
+            fault = _hiding(name, args[0], given.get("callback"))
+            fault = fault or _fault(name, {word: given[word] for word in needed if word in given}, needed)
             fault = fault or _no_group(name, given.get("callback_group"))
             if not fault:
                 raise
             kind = next(kind for kind in (TypeError, AttributeError, RuntimeError) if isinstance(error, kind))
             raise kind(fault) from None
-        if "callback" in needed and signature.bind(*args, **kwargs).arguments["callback"] is None:
-            _warn(name)
+        if "callback" in needed:
+            _check_callback(name, args[0], signature.bind(*args, **kwargs).arguments["callback"])
         if "qos_profile" in signature.parameters:
             _check_depth(name, signature.bind(*args, **kwargs).arguments.get("qos_profile"))
         repeats.count(cast("Node", args[0]), name, made)
@@ -165,11 +166,35 @@ def _shown(value: object) -> str:
     return "qos_profile" if isinstance(value, QoSProfile) else "self" if _fits("node", value) else type(value).__name__
 
 
-def _warn(name: str) -> None:
-    """Warn that a call was given None as its callback, which ROS 2 accepts; not for graphflow's own calls."""
+def _check_callback(name: str, node: object, value: object) -> None:
+    """Warn of None as a callback, and refuse anything else that can not be called; ROS 2 accepts both.
+
+    ROS 2 fails when it calls the callback. A rate of its own has None.
+
+    Raises:
+        TypeError: The value is neither None nor a function.
+    """
+    if callable(value):
+        return
+    if value is not None:
+        raise TypeError(_hiding(name, node, value) or _no_callback(name, value))
     asked = caller(2)
     if asked is not None:
-        logger.warning("%s (%s)", _no_callback(name, None), asked.place)
+        logger.warning("%s (%s)", _hiding(name, node, None) or _no_callback(name, None), asked.place)
+
+
+def _hiding(name: str, node: object, value: object) -> str:
+    """Describe a callback that is an attribute with the name of a method; empty if it is none."""
+    if callable(value):
+        return ""
+    own = getattr(node, "__dict__", {})
+    hidden = {word: getattr(type(node), word, None) for word, kept in own.items() if kept is value}
+    for word, method in hidden.items():
+        if inspect.isfunction(method):
+            place = short_place(method.__code__.co_filename, method.__code__.co_firstlineno)
+            text = f"{name} was given self.{word}, which is {value!r} and hides the method {word} ({place})"
+            return f"{text}: give the attribute or the method another name"
+    return ""
 
 
 _POLICIES = {DurabilityPolicy: "durability", HistoryPolicy: "history", ReliabilityPolicy: "reliability"}

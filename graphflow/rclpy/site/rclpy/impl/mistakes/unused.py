@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from graphflow.graph import params_file
-from graphflow.names import Remap, did_you_mean, whole_rule
+from graphflow.names import Remap, did_you_mean, nearest, rule_hint
 from rclpy.impl.nodes import internals_of, nodes_of
 
 if TYPE_CHECKING:
@@ -25,6 +25,8 @@ WARN_AFTER = 3.0
 """Seconds from the first spin of a node."""
 _EVERY_NODES = {"use_sim_time", "start_type_description_service"}
 """Parameters that every node has."""
+_OVERRIDES = "qos_overrides."
+"""The prefix of parameters that only nodes with such overrides declare."""
 logger = logging.getLogger("graphflow")
 
 
@@ -66,7 +68,9 @@ class Unused:
         known = [name for node in nodes for name in _names(node)]
         params = {name for node in nodes for name in internals_of(node).parameters.names}
         for rule in self._life.args.remaps:
-            if rule not in used:
+            if rule not in used and (former := next(filter(None, (n.taken_by(rule) for n in resolvers)), None)):
+                yield f"the remap {rule} comes too late: {former} has renamed {rule.match} already; remove one"
+            elif rule not in used:
                 own = {node.get_name() for node in nodes}
                 way = f"; to rename the node: -r __node:={rule.replacement}" if rule.match in own else ""
                 way = way or _intended(rule, params, known)
@@ -87,12 +91,26 @@ class Unused:
         for sections in self._files:
             if not any(section.fits(name) for section in sections for name in names):
                 yield "; ".join(map(str, params_file.strays(sections, names)))
+            yield from (text for section in sections for text in self._undeclared(section, nodes))
+
+    def _undeclared(self, section: params_file.Section, nodes: list[Node]) -> Iterator[str]:
+        """Report a section's parameters that none of its nodes declares; sections for many nodes may have others'."""
+        of = [node for node in nodes if section.fits(node.get_fully_qualified_name())]
+        held = [internals_of(node).parameters for node in of]
+        if any(params.allows_undeclared for params in held):
+            return
+        known = list({name: None for params in held for name in params.names - _EVERY_NODES})
+        for name, setting in section.params.items() if of else ():
+            is_set = name in known or name in _EVERY_NODES or name.startswith(_OVERRIDES)
+            if not is_set and (section.is_exact or nearest(name, known) is not None):
+                text = f"{name} sets nothing: {_listed(of)} declares no such parameter{did_you_mean(name, known)}"
+                yield f"{setting.place}: {text}"
 
 
 def _intended(rule: Remap, params: set[str], known: list[str]) -> str:
     if rule.match in params:
         return f"; to set the parameter: -p {rule}"
-    return whole_rule(rule.match, rule.replacement, known) or _near(rule.match, known)
+    return rule_hint(rule.match, rule.replacement, known) or _near(rule.match, known)
 
 
 def _near(word: str, known: list[str]) -> str:

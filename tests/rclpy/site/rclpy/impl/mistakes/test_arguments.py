@@ -139,6 +139,26 @@ def test_no_callback_where_ros_takes_it(node: Node, caplog: pytest.LogCaptureFix
     assert re.search(r"\(test_arguments\.py:\d+\)$", text)
 
 
+@pytest.mark.parametrize("value", [False, 3])
+@pytest.mark.parametrize("what", ["create_timer", "create_service", "create_subscription"])
+def test_an_attribute_that_hides_the_callback(node: Node, what: str, value: object) -> None:
+    """The call is refused, with the method's line; ROS 2 fails when it calls the callback."""
+    lamp: Any = Lamp("lamp")
+    lamp.tick = value
+    given = {"create_timer": (1.0, value), "create_service": (Trigger, "a", value)}
+    with pytest.raises((TypeError, RuntimeError)) as caught:
+        getattr(lamp, what)(*given.get(what, (String, "a", value, 10)))
+    text = str(caught.value)
+    assert text.startswith(f"{what} was given self.tick, which is {value!r} and hides the method tick (test_arguments")
+    assert text.endswith("give the attribute or the method another name")
+
+
+def test_a_callback_that_is_no_function(node: Node) -> None:
+    """It is refused where it is given."""
+    with pytest.raises(TypeError, match="create_timer was given 'tick' as its callback: pass the method itself"):
+        node.create_timer(1.0, "tick")  # type: ignore[arg-type]
+
+
 def test_a_policy_where_a_depth_belongs(node: Node, caplog: pytest.LogCaptureFixture) -> None:
     """It is told what the number means; ROS 2 takes it."""
     node.create_publisher(String, "chat", ReliabilityPolicy.BEST_EFFORT)

@@ -55,6 +55,26 @@ def test_what_no_node_has_used(caplog: Caplog, tmp_path: Path, line: str, text: 
     assert told(caplog) == ([text.format(file=file)] if text else [])
 
 
+@pytest.mark.parametrize(
+    ("section", "text"),
+    [
+        ("lamp", "levle sets nothing: /lamp declares no such parameter; did you mean 'level'?"),
+        ("/**", "levle sets nothing: /lamp declares no such parameter; did you mean 'level'?"),
+        ("lamp", "colour sets nothing: /lamp declares no such parameter; there is level"),
+        ("/**", "colour"),
+        ("lamp", "level"),
+        ("lamp", "qos_overrides./light.publisher.depth"),
+    ],
+)
+def test_a_parameter_of_a_file(caplog: Caplog, tmp_path: Path, section: str, text: str) -> None:
+    """It is told with its line, if its node declares no such one; a section for many nodes may have others'."""
+    file = tmp_path / "lamp.yaml"
+    file.write_text(f"{section}:\n  ros__parameters:\n    {text.split()[0]}: 2\n")
+    rclpy.init(args=["--ros-args", "--params-file", str(file)])
+    Lamp().destroy_node()
+    assert told(caplog) == ([f"{file}:3:{'12' if 'levle' in text else '13'}: {text}"] if "sets" in text else [])
+
+
 def test_it_is_told_while_nodes_run(caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """Once, of all nodes together, when they have had time from the first spin on to make their names."""
     monkeypatch.setattr(unused, "WARN_AFTER", 0.0)

@@ -1,0 +1,47 @@
+"""A spin_once in place of a spin."""
+
+from __future__ import annotations
+
+import ast
+
+import pytest
+
+from graphflow.analysis.mistakes.calls.single_spins import single_spins
+
+_PROGRAM = """
+class Talker(Node):
+    def __init__(self):
+        self.create_{made}
+
+def main():
+    {spin}
+
+{more}
+"""
+_TIMER = "timer(0.5, self.tick)"
+
+
+def _found(spin: str, made: str = _TIMER, more: str = "main()") -> list[tuple[int, str]]:
+    return list(single_spins(ast.parse(_PROGRAM.format(spin=spin, made=made, more=more))))
+
+
+def test_the_only_spin() -> None:
+    """The sentence has the call that runs until the program is stopped."""
+    [(line, text)] = _found("rclpy.spin_once(Talker())")
+    assert line == 7
+    assert text.startswith("rclpy.spin_once calls one callback and returns, and no timer runs after it")
+    assert text.endswith("write rclpy.spin(Talker())")
+
+
+@pytest.mark.parametrize(
+    ("spin", "made", "more"),
+    [
+        ("while rclpy.ok(): rclpy.spin_once(node)", _TIMER, "main()"),
+        ("rclpy.spin_once(node)", "subscription(Int32, 'a', self.heard, 10)", "main()"),
+        ("rclpy.spin_once(node)", _TIMER, "rclpy.spin(node)"),
+        ("pass", _TIMER, "def step(): rclpy.spin_once(node)"),
+    ],
+)
+def test_spins_that_may_be_meant(spin: str, made: str, more: str) -> None:
+    """A loop, a program that waits for one message, one that also spins, and a helper are left alone."""
+    assert _found(spin, made, more) == []
