@@ -3,14 +3,17 @@
 The locals of a coroutine's frame lie in the coroutine object. CPython 3.13 reads freed memory if they are requested
 after the coroutine was closed (gh-125723), which another thread may do at any moment. Hence nothing keeps a frame to
 read it later: a `Frame` is a copy, made while the coroutine is known to be suspended. Between that test and the copy
-there must be no call and no loop, because only at those does CPython switch to another thread.
+there must be no call and no loop, because only at those does CPython switch to another thread; CPython 3.11 also does
+in a garbage collection, which `uncollected` holds back.
 """
 
 from __future__ import annotations
 
+import gc
 import inspect
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from types import CodeType, CoroutineType, FrameType, GeneratorType
 from typing import Any
@@ -38,6 +41,24 @@ class Frame:
         return id(self.original)
 
 
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Hold garbage collection back while frames of other threads are read; needed in CPython 3.11 alone.
+
+    There a collection begins within any allocation, even inside `f_locals` and `f_back`, and runs the callbacks of weak
+    references, so that other threads run: a function returns, and its frame is then read where it no longer is. From
+    3.12 on a collection begins between two instructions only.
+    """
+    if sys.version_info >= (3, 12) or not gc.isenabled():
+        yield
+        return
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+
+
 def running(frame: FrameType) -> Frame:
     """Copy a frame from the stack of a thread, which may run on meanwhile.
 
@@ -56,18 +77,19 @@ def suspended(owner: object) -> Frame | None:
 
     The two branches differ in an attribute only, yet must not share code: a call in between could switch threads.
     """
-    if isinstance(owner, CoroutineType):
-        frame = owner.cr_frame
-        if frame is None:
+    with uncollected():
+        if isinstance(owner, CoroutineType):
+            frame = owner.cr_frame
+            if frame is None:
+                return None
+            names = {**frame.f_locals}
+        elif isinstance(owner, GeneratorType):
+            frame = owner.gi_frame
+            if frame is None:
+                return None
+            names = {**frame.f_locals}
+        else:
             return None
-        names = {**frame.f_locals}
-    elif isinstance(owner, GeneratorType):
-        frame = owner.gi_frame
-        if frame is None:
-            return None
-        names = {**frame.f_locals}
-    else:
-        return None
     return Frame(frame.f_code, frame.f_lineno or 0, names, frame.f_globals, frame)
 
 
@@ -98,7 +120,8 @@ def stack_from(innermost: FrameType | None) -> list[Frame]:
     """Copy a frame of a running thread and its callers, the outermost first."""
     frames: list[Frame] = []
     frame = innermost
-    while frame is not None:
-        frames.append(running(frame))
-        frame = frame.f_back
+    with uncollected():
+        while frame is not None:
+            frames.append(running(frame))
+            frame = frame.f_back
     return frames[::-1]

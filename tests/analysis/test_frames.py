@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import gc
+import subprocess
 import sys
 import threading
 from collections.abc import Generator
 from types import FrameType
 
-from graphflow.analysis.frames import awaited, code_of, running, stack_of, suspended
+from graphflow.analysis.frames import awaited, code_of, running, stack_of, suspended, uncollected
 
 
 def counting(limit: int) -> Generator[FrameType, None, None]:
@@ -99,3 +101,42 @@ def test_stack_of_a_thread() -> None:
 
     assert names.index("run") < names.index("inner")
     assert stack_of(-1) == []
+
+
+_COLLECTING = """
+import gc, threading, time
+from graphflow.analysis.frames import stack_of
+
+def leaf(a, b):
+    return [a, b]
+
+def work():
+    while True:
+        leaf(1, 2)
+
+worker = threading.Thread(target=work, daemon=True)
+worker.start()
+gc.callbacks.append(lambda *_: threading.current_thread() is worker or time.sleep(0.0002))
+gc.set_threshold(3)
+kept = []
+for number in range(60):
+    kept += [[] for _ in range(number % 3)]
+    kept.append(stack_of(worker.ident))
+assert gc.isenabled()
+"""
+
+
+def test_a_stack_that_is_read_while_collections_run() -> None:
+    """They let other threads run; CPython 3.11 would then read frames that are gone, and crash."""
+    subprocess.run([sys.executable, "-c", _COLLECTING], check=True, timeout=60)
+
+
+def test_a_program_without_collections() -> None:
+    """They stay off, if the program has switched them off."""
+    gc.disable()
+    try:
+        with uncollected():
+            pass
+        assert not gc.isenabled()
+    finally:
+        gc.enable()

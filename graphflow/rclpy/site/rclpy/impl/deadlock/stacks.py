@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from types import FrameType
 
-from graphflow.analysis.frames import Frame, stack_from
+from graphflow.analysis.frames import Frame, stack_from, uncollected
 from graphflow.analysis.user_code import is_ours, is_users
 from rclpy.executors import SPINS, Executor
 from rclpy.impl.spinning import STEP, Run, Spinning
@@ -98,16 +98,17 @@ def standing() -> dict[int, tuple[int, int]]:
     The cost is a walk along the end of each stack. Threads that only wait for work are omitted.
     """
     found: dict[int, tuple[int, int]] = {}
-    for thread, innermost in sys._current_frames().items():
-        frame: FrameType | None = innermost
-        while frame is not None and frame.f_code is not _NEXT:
-            if is_users(frame.f_code.co_filename):
-                found[thread] = id(frame), frame.f_lineno
-                break
-            frame = frame.f_back
-        else:
-            if frame is not None and is_in_run(frame):  # it spins within a callback
-                found[thread] = id(frame), 0
+    with uncollected():
+        for thread, innermost in sys._current_frames().items():
+            frame: FrameType | None = innermost
+            while frame is not None and frame.f_code is not _NEXT:
+                if is_users(frame.f_code.co_filename):
+                    found[thread] = id(frame), frame.f_lineno
+                    break
+                frame = frame.f_back
+            else:
+                if frame is not None and is_in_run(frame):  # it spins within a callback
+                    found[thread] = id(frame), 0
     return found
 
 
