@@ -10,7 +10,7 @@ from typing import Any
 
 from graphflow.cli import output
 from graphflow.runtime.context import Context
-from graphflow.runtime.ending import catch_signals
+from graphflow.runtime.ending import StopRequest, catch_signals
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.transport.event_loop import loop
@@ -43,7 +43,7 @@ class _Talk(logging.Handler):
 async def _run(
     work: Callable[[Node], Awaitable[int]], name: str, has_services: bool, parameters: Mapping[str, Any]
 ) -> int:
-    stop = asyncio.Event()
+    stop = StopRequest()
     catch_signals(stop)
     context = await Context.open()
     context.unmatched.close()  # verbs report unmatched endpoints themselves
@@ -55,14 +55,11 @@ async def _run(
         node = Node(name, start_parameter_services=has_services, enable_rosout=False, **parameters)
         await core_of(node).start(context)
         task = asyncio.ensure_future(work(node))
-        stopped = asyncio.ensure_future(stop.wait())
-        await asyncio.wait([task, stopped], return_when=asyncio.FIRST_COMPLETED)
-        stopped.cancel()
-        if task.done():
-            return task.result()
-        # Cancelled work may still return an exit code: `action send_goal` first cancels its goal.
-        task.cancel()
+        stop.when_set = task.cancel
+        if stop.is_set():
+            task.cancel()
         await asyncio.wait([task])
+        # Cancelled work may still return an exit code: `action send_goal` first cancels its goal.
         return 0 if task.cancelled() else task.result()
     finally:
         if node is not None:

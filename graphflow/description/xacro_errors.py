@@ -9,6 +9,7 @@ from xml.parsers.expat import ExpatError
 
 from graphflow.errors import Place, Problem
 from graphflow.names import did_you_mean
+from graphflow.reading import found_text
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 _LONGEST = 1_000_000
@@ -48,7 +49,7 @@ def problem(error: Exception, files: Sequence[str]) -> Problem:
 
 def _text(file: str) -> str:
     try:
-        return Path(file).read_text(errors="replace")[:_LONGEST]
+        return found_text(Path(file), "replace")[:_LONGEST]
     except OSError:
         return ""
 

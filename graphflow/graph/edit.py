@@ -16,6 +16,7 @@ from graphflow.errors import GraphFileError, Place, Problem
 from graphflow.graph.plan import Plan
 from graphflow.interface import GroupChange
 from graphflow.machines.regrouping import plain
+from graphflow.reading import found_text
 
 KeyPath = tuple[str, ...]
 """The keys that lead to a node's mapping: `("nodes", "/turtle1/follower")`, or below `override`."""
@@ -39,7 +40,7 @@ def node_paths(plan: Plan, nodes: set[str], folder: Path) -> dict[str, KeyPath]:
             file = (folder / node.place.file).resolve()
             key = _key_at(file, node.place)
             if file != top and not isinstance(
-                _load(top.read_text(encoding="utf-8-sig"), plan.file).get("include"), str
+                _load(found_text(top), plan.file).get("include"), str
             ):
                 text = (
                     f"{node.name} comes from here, which {plan.file} includes in a block; write it under that override:"
@@ -51,7 +52,7 @@ def node_paths(plan: Plan, nodes: set[str], folder: Path) -> dict[str, KeyPath]:
 
 def _key_at(file: Path, place: Place) -> str:
     """Return the key of `nodes` or `override` on a line."""
-    data = _load(file.read_text(encoding="utf-8-sig"), str(file))
+    data = _load(found_text(file), str(file))
     for section in ("nodes", "override"):
         nodes = data.get(section)
         if isinstance(nodes, CommentedMap):

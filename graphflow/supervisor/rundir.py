@@ -23,6 +23,7 @@ from pathlib import Path
 from graphflow.domain import domain_id, rendezvous_endpoint
 from graphflow.errors import SupervisorError
 from graphflow.folders import log_root, make_private, named, newest_logs, temporary_root
+from graphflow.reading import found_text
 from graphflow.system import is_portable
 
 SUPERVISOR_LOG = "+supervisor.log"
@@ -224,7 +225,7 @@ class RunDirectory:
         try:
             _lock_soon(guard, root / "names.lock")
             for file in self.path.parent.glob("*/names"):
-                claimed = file.read_text(encoding="utf-8").split("\n") if file.parent != self.path else []
+                claimed = found_text(file).split("\n") if file.parent != self.path else []
                 taken = sorted(set(names).intersection(claimed)) if claimed[:1] == [endpoint] else []
                 # A graph that was killed has left its names behind, but no lock.
                 if taken and is_locked(_lock_of(file.parent)):
@@ -338,7 +339,7 @@ def lock_file(fd: int) -> None:
 def read_run(path: Path) -> GraphRun | None:
     """Read a run file; None if it is missing or not a run file."""
     try:
-        return GraphRun(**json.loads(path.read_text()))
+        return GraphRun(**json.loads(found_text(path)))
     except (OSError, ValueError, TypeError):
         return None
 

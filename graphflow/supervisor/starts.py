@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.errors import SupervisorError
+from graphflow.reading import found_bytes
 from graphflow.supervisor.rundir import is_locked, lock_file, runtime_root
 
 PATIENCE = 30.0
@@ -84,7 +85,7 @@ def starting() -> list[Start]:
     for path in sorted(runtime_root().glob("*.start")):
         if is_locked(path):
             try:
-                found.append(Start(int(path.stem), os.fsdecode(path.read_bytes())))
+                found.append(Start(int(path.stem), os.fsdecode(found_bytes(path))))
             except (OSError, ValueError):  # it has just ended
                 continue
         else:  # its process was killed

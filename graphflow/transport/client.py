@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import queue
+import re
 import time
-from collections import deque
+from collections import Counter, deque
 from typing import Any, Self
 
 import zenoh
@@ -18,6 +19,8 @@ from graphflow.transport.rendezvous import join
 
 TOKENS_LIMIT = 10.0
 """Seconds after which queries for tokens stop."""
+_ZID = re.compile("[0-9a-f]{16,32}")
+"""The id of a session in a token."""
 MANY_TOKENS = 1000
 """Number of tokens that a router takes noticeable time to process."""
 
@@ -52,7 +55,8 @@ class Client:
         while True:
             found = self._known(key)
             if time.monotonic() - began >= TOKENS_LIMIT:
-                raise TransportError(f"only {len(found)} tokens of the graph came within {TOKENS_LIMIT:g} s; try again")
+                text = f"only {len(found)} tokens of the graph came within {TOKENS_LIMIT:g} s{_most(found)}"
+                raise TransportError(f"{text}; try again")
             if len(found) <= before:
                 return found
             before = len(found)
@@ -108,6 +112,13 @@ class Client:
 
     def close(self) -> None:
         close_session(self._session)
+
+
+def _most(tokens: list[str]) -> str:
+    """Describe the session that announces most of some tokens; empty if none has many."""
+    sessions = Counter(part for token in tokens for part in token.split("/") if _ZID.fullmatch(part))
+    [(session, count)] = sessions.most_common(1) or [("", 0)]
+    return f", {count} of them from session {session}, which overloads the router: end it" if count > MANY_TOKENS else ""
 
 
 class Hearing:

@@ -14,6 +14,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from graphflow.reading import found_bytes
 from graphflow.workspace.packages import uses_ros
 from graphflow.workspace.setup_file import EntryPoint
 
@@ -112,7 +113,7 @@ def _program(distribution: Distribution, module: str, function: str) -> tuple[Pa
     """Return the file and function of a console script written for rclpy; None for any other."""
     file = _located(distribution, module).with_suffix(".py")
     try:
-        is_ours = b"rclpy" in file.read_bytes() and uses_ros(file)
+        is_ours = b"rclpy" in found_bytes(file) and uses_ros(file)
     except OSError:  # the module is a package's `__init__.py`, or its file has been moved
         return None
     return (file, EntryPoint(module, function)) if is_ours else None

@@ -101,6 +101,16 @@ def test_a_list_that_is_cut_off_is_an_error(client: Client, monkeypatch: pytest.
         client.tokens("test/*")
 
 
+def test_the_session_that_overloads_the_router(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is named if it announces many tokens; others and their number are not."""
+    monkeypatch.setattr(client_module, "TOKENS_LIMIT", 1e-9)
+    loud, quiet = "ab" * 16, "cd" * 16
+    tokens = [f"@ros2_lv/0/{loud}/{i}/{i}/NN/%/%/fake{i}" for i in range(client_module.MANY_TOKENS + 1)]
+    monkeypatch.setattr(client, "_known", lambda key: [*tokens, f"@ros2_lv/0/{quiet}/0/0/NN/%/%/talker"])
+    with pytest.raises(TransportError, match=f"1001 of them from session {loud}, which overloads the router: end it"):
+        client.tokens("@ros2_lv/*")
+
+
 def test_a_list_that_still_grows(
     foreign_router: zenoh.Session, client: Client, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -18,6 +18,7 @@ from graphflow.cli.graphs.loglines import Chosen, record
 from graphflow.cli.graphs.node_rows import NodeRow, node_rows
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
+from graphflow.reading import found_text
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.processes.process_tree import state_of
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, left_over
@@ -34,6 +35,8 @@ _DOWN_LIMIT = 60.0
 """Seconds that may pass between the ends of two processes while a graph goes down."""
 _SILENCE_LIMIT = 2.0
 """Seconds that a supervisor may take to answer a request."""
+LOG_BOUND = 100_000_000
+"""Size limit in bytes of a supervisor's log that is searched for its end."""
 _SOCKET_LIMIT = 3.0
 """Seconds that a supervisor may take to notice that its socket was removed and to recreate it."""
 _ANSWERS = ("stopping", "exited", "end", "error")
@@ -336,7 +339,7 @@ def how_ended(logs: Path) -> str:
 
 def _supervisor_log(logs: Path) -> list[str]:
     try:
-        return (logs / SUPERVISOR_LOG).read_text(encoding="utf-8", errors="replace").splitlines()
+        return found_text(logs / SUPERVISOR_LOG, "replace", LOG_BOUND).splitlines()
     except OSError:
         return []
 

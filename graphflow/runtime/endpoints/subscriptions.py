@@ -7,11 +7,12 @@ import struct
 from asyncio import Future
 from collections.abc import AsyncIterator, Callable
 from inspect import iscoroutinefunction
+from time import monotonic
 from typing import Any, Generic, TypeVar
 
 from graphflow.errors import ClosedError, DecodeError
 from graphflow.executor.groups import HandlerGroup
-from graphflow.executor.runner import BURST, Runner, RunnerSpec, title_of
+from graphflow.executor.runner import SLICE, Runner, RunnerSpec, title_of
 from graphflow.interface import OnError
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
@@ -87,6 +88,8 @@ class TopicSubscription(Endpoint, Generic[M]):
         self.runner: Runner | None = None
         self._inbox: Inbox | None = None
         self._taken = 0
+        self._turn_ends = 0.0
+        """When a reader has to give the loop a turn, in seconds on the monotonic clock."""
         self._waiters: set[Future[None]] = set()
         self._sources: dict[bytes, Source] = {}
         self._leases = Leases(host, self._sources, self.matched, self._liveliness_changed)
@@ -379,10 +382,11 @@ class TopicSubscription(Endpoint, Generic[M]):
         """Return the next message and its `MessageInfo`. Raises StopAsyncIteration when the subscription is closed."""
         while True:
             if self._inbox is None or self.entity is None:
-                raise StopAsyncIteration
+                raise StopAsyncIteration(f"{self.name} is closed: read it while its node runs")
             while self._inbox.items:
-                if self._taken % BURST == BURST - 1:
+                if monotonic() >= self._turn_ends:
                     await asyncio.sleep(0)  # a sender faster than the reader must not monopolize the loop
+                    self._turn_ends = monotonic() + SLICE
                     if not self._inbox.items:
                         break
                 self._taken += 1
@@ -396,6 +400,7 @@ class TopicSubscription(Endpoint, Generic[M]):
                 await waiter
             finally:
                 self._waiters.discard(waiter)
+            self._turn_ends = monotonic() + SLICE
 
     def begin_to_stop(self) -> Runner | None:
         return self.runner

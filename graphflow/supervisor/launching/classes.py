@@ -19,6 +19,7 @@ from graphflow.analysis.user_code import place_in
 from graphflow.errors import DeclarationError, GraphflowError, NoModule
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
+from graphflow.reading import found_text
 from graphflow.runtime.importing import importing
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.mistakes.errors.python_errors import remark_on
@@ -133,7 +134,7 @@ def _bundled(wanted: str) -> str:
     near = "robot_simulator" if is_robot else nearest(wanted.rpartition(".")[2], files, cutoff=0.75)
     if near is None or near not in files:
         return ""
-    text = files[near].read_text("utf-8")
+    text = found_text(files[near])
     found = re.findall(r"^class (\w+)\((?:LifecycleNode|Node|SimulationServices)\)", text, re.MULTILINE)
     return f"; did you mean 'nodes.{near}:{found[0]}', which comes with graphflow?" if found else ""
 

@@ -582,13 +582,14 @@ async def test_reprs_tell_name_and_type(graph: Graph) -> None:
     assert repr(node.create_timer(0.5, nothing)) == "<Timer nothing 0.5 s>"
 
 
-async def test_an_iteration_leaves_the_loop_its_turns(graph: Graph) -> None:
-    """A reader whose queue is full lets others run after every BURST messages."""
+async def test_an_iteration_leaves_the_loop_its_turns(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A reader whose queue is full lets others run when its slice is over, here after every message."""
+    monkeypatch.setattr(subscriptions, "SLICE", 0.0)
     node = Node("reader")
-    heard = node.create_subscription(String, "chatter", None, 5 * BURST)
+    heard = node.create_subscription(String, "chatter", None, 50)
     await graph.start(node)
     publisher = graph.publisher(String, "/chatter")
-    for _ in range(5 * BURST):
+    for _ in range(50):
         publisher.publish(String())
     await graph.settle()
     taken: list[int] = []
@@ -599,13 +600,13 @@ async def test_an_iteration_leaves_the_loop_its_turns(graph: Graph) -> None:
             taken.append(len(turns))
 
     reader = asyncio.ensure_future(read())
-    while len(taken) < 5 * BURST:
+    while len(taken) < 50:
         turns.append(len(taken))
         await asyncio.sleep(0)
     turns.append(len(taken))
     reader.cancel()
 
-    assert all(later - earlier <= BURST for earlier, later in itertools.pairwise(turns))
+    assert all(later - earlier <= 1 for earlier, later in itertools.pairwise(turns))
 
 
 async def test_a_subscription_that_is_paused_leaves_out_what_comes(graph: Graph) -> None:
@@ -634,3 +635,13 @@ async def test_messages_of_any_number_of_senders(graph: Graph, monkeypatch: pyte
     for number in range(4):
         assert listening._is_fresh(1, 0, bytes([number]) * 16)
     assert len(listening._sources) == 2
+
+
+async def test_a_reading_after_the_nodes_end(graph: Graph) -> None:
+    """The end of the iteration says why nothing can be read."""
+    node = Node("reader")
+    heard = node.create_subscription(String, "chatter", None, 10)
+    await graph.start(node)
+    await graph.stop(node)
+    with pytest.raises(StopAsyncIteration, match="/chatter is closed: read it while its node runs"):
+        await anext(heard)
