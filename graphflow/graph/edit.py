@@ -39,9 +39,7 @@ def node_paths(plan: Plan, nodes: set[str], folder: Path) -> dict[str, KeyPath]:
         if node.name in nodes:
             file = (folder / node.place.file).resolve()
             key = _key_at(file, node.place)
-            if file != top and not isinstance(
-                _load(found_text(top), plan.file).get("include"), str
-            ):
+            if file != top and not isinstance(_load(found_text(top), plan.file).get("include"), str):
                 text = (
                     f"{node.name} comes from here, which {plan.file} includes in a block; write it under that override:"
                 )

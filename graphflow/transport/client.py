@@ -118,7 +118,9 @@ def _most(tokens: list[str]) -> str:
     """Describe the session that announces most of some tokens; empty if none has many."""
     sessions = Counter(part for token in tokens for part in token.split("/") if _ZID.fullmatch(part))
     [(session, count)] = sessions.most_common(1) or [("", 0)]
-    return f", {count} of them from session {session}, which overloads the router: end it" if count > MANY_TOKENS else ""
+    return (
+        f", {count} of them from session {session}, which overloads the router: end it" if count > MANY_TOKENS else ""
+    )
 
 
 class Hearing:

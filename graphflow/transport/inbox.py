@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 
 KEEP_ALL_BOUND = 10_000
 """Queue length of a KEEP_ALL subscription."""
+WEIGHED = 10
+"""Queue length from which the bytes are limited, too."""
 DEEP = 100
-"""Queue length from which the bytes are limited, too, and messages are copied out of the network's buffers."""
+"""Queue length from which messages are also copied out of the network's buffers."""
 BYTES_BOUND = 256 << 20
-"""Most bytes of messages in a deep queue, or of requests in a queue."""
+"""Most bytes of messages in a weighed queue, or of requests in a queue."""
 REQUESTS_BOUND = 10_000
 """Most requests that wait for the loop."""
 STAND_INS = 10
@@ -158,8 +160,8 @@ class Inbox:
             self._losses.put(None)
 
 
-class DeepInbox(Inbox):
-    """A long inbox whose bytes are limited as well, to `BYTES_BOUND`.
+class WeighedInbox(Inbox):
+    """An inbox whose bytes are limited as well, to `BYTES_BOUND`.
 
     The loop takes messages without accounting for them, so the queue is only counted once enough has arrived to
     possibly exceed the limit. Then a quarter is dropped at once, so that counting costs little per message even when it
@@ -192,6 +194,12 @@ class DeepInbox(Inbox):
         self._at_most = waiting
         if self.dropped >= self._tell_at:
             self._tell_loss()
+
+
+class DeepInbox(WeighedInbox):
+    """A weighed inbox for many messages: each loss matters, and they must not hold the network's buffers."""
+
+    __slots__ = ()
 
 
 class RequestInbox(Inbox):
@@ -254,4 +262,5 @@ def size_of(item: Any) -> int:
 def open_inbox(qos: Qos, bell: Wakeup, ready: Callable[[], None]) -> Inbox:
     """Return the inbox for a subscription."""
     bound = KEEP_ALL_BOUND if qos.history is History.KEEP_ALL else qos.depth
-    return DeepInbox(bell, bound, ready) if bound > DEEP else Inbox(bell, bound, ready)
+    kind = Inbox if bound <= WEIGHED else WeighedInbox if bound <= DEEP else DeepInbox
+    return kind(bell, bound, ready)

@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import pytest
 
+from graphflow.qos import Qos
 from graphflow.testing.clock import settle
 from graphflow.transport import inbox as module
-from graphflow.transport.inbox import Bell, DeepInbox, Inbox, RequestInbox, size_of
+from graphflow.transport.inbox import Bell, DeepInbox, Inbox, RequestInbox, WeighedInbox, open_inbox, size_of
 
 
 async def test_a_burst_rings_once(graphflow_runner: asyncio.Runner) -> None:
@@ -171,6 +172,13 @@ async def test_a_deep_inbox_is_bounded_by_its_bytes(
         inbox.put(Arrival(bytes(100)))
         inbox.items.popleft()
     assert inbox.dropped == dropped
+
+
+@pytest.mark.parametrize(("depth", "kind"), [(10, Inbox), (11, WeighedInbox), (100, WeighedInbox), (101, DeepInbox)])
+async def test_the_inbox_of_a_depth(graphflow_runner: asyncio.Runner, depth: int, kind: type[Inbox]) -> None:
+    """Ten messages are few enough without counting their bytes."""
+    made = open_inbox(Qos(depth=depth), Bell(asyncio.get_running_loop(), threads=False), lambda: None)
+    assert type(made) is kind
 
 
 async def test_losses_are_told(graphflow_runner: asyncio.Runner) -> None:

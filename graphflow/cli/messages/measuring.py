@@ -27,6 +27,8 @@ POLL = 0.05
 """Seconds between two checks for new topics and output."""
 QOS = replace(BEST_AVAILABLE, durability=Durability.VOLATILE, depth=2000)
 """QoS of the subscriptions: no messages from before, and a depth that takes bursts."""
+TYPES = 4
+"""The types of one topic that are measured, at most: a misleading announcement must not hide the others."""
 SILENT = 2.0
 """Seconds without messages after which a warning is printed."""
 
@@ -136,9 +138,19 @@ async def _measure(
     has_warned = False
     while not failed:
         for topic in sorted(waiting):
-            for publisher in cache.endpoints(Kind.PUBLISHER, topic)[:1]:
+            kinds = list(dict.fromkeys((p.type, p.hash) for p in cache.endpoints(Kind.PUBLISHER, topic)))[:TYPES]
+            if kinds:
                 waiting.discard(topic)
-                listen(topic, publisher.type, publisher.hash)
+            if len(kinds) > 1:
+                several = " and ".join(dict.fromkeys(type_name for type_name, _ in kinds))
+                output.talk(f"WARNING: {topic} is published with several types, and all are measured: {several}")
+            for type_name, type_hash in kinds:
+                try:
+                    listen(topic, type_name, type_hash)
+                except UsageFault as error:
+                    if len(kinds) == 1:
+                        raise
+                    output.talk(f"WARNING: {error}")
         await clock.sleep(POLL)
         now_ns = clock.monotonic_ns()
         if now_ns >= next_ns:
