@@ -10,10 +10,14 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from types import FrameType, FunctionType, MethodType
+from typing import Any, TypeAlias
 
-from graphflow.runtime.stop_limit import StopLimit, say
+from graphflow.runtime.stop_limit import StopLimit, is_exiting, say
 
 logger = logging.getLogger("graphflow")
+
+_Handler: TypeAlias = Callable[[int, FrameType | None], Any] | int | None
+"""A signal handler, as `signal.signal` takes and returns it."""
 
 SAME_SIGNAL = 0.1
 """Seconds within which a second signal counts as the first."""
@@ -92,9 +96,21 @@ def catch_signals(stop: asyncio.Event, *, is_limited: bool = False) -> Callable[
         watch.cancel()
         limit.closed()
         for number, handler in former.items():
-            signal.signal(number, handler)
+            signal.signal(number, _ending_twice(handler) if is_limited and limit.is_started else handler)
 
     return restore
+
+
+def _ending_twice(former: _Handler) -> _Handler:
+    """Return a handler that ends a process that waits for its threads, as its reminder says, or calls a former one."""
+
+    def caught(number: int, frame: FrameType | None) -> None:
+        if is_exiting() or not callable(former):
+            say("ended without cleanup: it was asked twice")
+            os._exit(1)
+        former(number, frame)
+
+    return former if former is signal.SIG_IGN else caught
 
 
 def _begin_to_end(loop: asyncio.AbstractEventLoop, stop: asyncio.Event, limit: StopLimit, number: int) -> None:
@@ -130,4 +146,4 @@ def _name(handler: object) -> str:
         return f"{function.__module__}.{function.__qualname__} ({code.co_filename}:{code.co_firstlineno})"
     if handler is None:
         return "code outside Python"
-    return f"code that chose {handler}"
+    return f"code that chose {handler.name if isinstance(handler, signal.Handlers) else handler}"

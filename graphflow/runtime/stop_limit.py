@@ -163,7 +163,10 @@ class StopLimit:
         is_reminded = is_interrupted = False
         interrupts = 0
         pause = threading.Event()
-        while not self._cancelled and self._ping():
+        while not self._cancelled:
+            has_answered = not self._unanswered  # before the next ping, which a hook may block at once
+            if not self._ping():
+                break
             pause.wait(LOOK_EVERY)
             total, elapsed = total + LOOK_EVERY, elapsed + LOOK_EVERY
             silent = silent + LOOK_EVERY if self._unanswered else 0.0
@@ -171,7 +174,7 @@ class StopLimit:
             self._changed = False
             if self._closed:
                 closed = 0.0 if closed is None else closed + LOOK_EVERY
-            if is_interrupted and not self._unanswered:
+            if is_interrupted and (has_answered or not self._unanswered):
                 is_interrupted = False
                 elapsed = 0.0 if interrupts == 1 else elapsed
             if not interrupts and self._is_enforced and self._reads_terminal(elapsed, silent):
@@ -189,6 +192,28 @@ class StopLimit:
                 self._interrupt(1)
             elif self._is_enforced and due in (Step.END_BLOCKED, Step.END_UNENDING):
                 self._end(total, due)
+        if self._is_enforced:
+            self._watch_threads()
+
+    def _watch_threads(self) -> None:
+        """End a process that only waits for its other threads, or for a process pool, any longer.
+
+        A program may do other work when its nodes have ended: until it ends, too, nothing is done here.
+        """
+        waited = 0.0
+        while waited < LIMIT:
+            time.sleep(LOOK_EVERY)
+            if not is_exiting():
+                continue
+            waited += LOOK_EVERY
+            if waited - LOOK_EVERY < REMIND_AFTER <= waited:
+                _remind()
+        what = "; ".join(hindrances()) or "a thread in code outside this program"
+        say(
+            f"ended without cleanup {waited:.0f} s after its nodes: still waiting for {what}; give a thread daemon=True"
+        )
+        _flush()
+        os._exit(1)
 
     def _ping(self) -> bool:
         """Ask the loop to answer, unless it owes an answer; returns False once the loop is closed."""
@@ -256,6 +281,12 @@ def _flush() -> None:
     flushing = threading.Thread(target=flush, daemon=True)
     flushing.start()
     flushing.join(LOOK_EVERY)
+
+
+def is_exiting() -> bool:
+    """Whether the main thread has ended, but for its wait for other threads."""
+    frames = stack_of(threading.main_thread().ident or 0)
+    return bool(frames) and frames[0].f_code is threading._shutdown.__code__  # type: ignore[attr-defined]
 
 
 def is_reading(thread: int) -> bool:

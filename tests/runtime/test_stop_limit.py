@@ -155,6 +155,35 @@ class Blocked(graphflow.Node):
 graphflow.run(Blocked)
 """
 
+READING = """
+import threading
+
+def read_port():
+    while True:
+        time.sleep(0.01)
+
+class Reading(graphflow.Node):
+    @graphflow.task
+    async def start(self):
+        threading.Thread(target=read_port, name="port").start()
+        print("up", flush=True)
+
+graphflow.run(Reading)
+"""
+
+POOLED = """
+from concurrent.futures import ThreadPoolExecutor
+
+class Pooled(graphflow.Node):
+    @graphflow.task
+    async def start(self):
+        self.pool = ThreadPoolExecutor(1)
+        self.pool.submit(time.sleep, 100.0)
+        print("up", flush=True)
+
+graphflow.run(Pooled)
+"""
+
 SLOW = """
 class Slow(graphflow.Node):
     async def on_start(self):
@@ -182,6 +211,13 @@ print("saved", flush=True)
         (SWALLOWING, signal.SIGTERM, 1, ["ended without cleanup", "still running: work in ", ".py:14: write"]),
         (SPINNING, signal.SIGINT, 1, ["ended without cleanup", "py:14 catches what would end it"]),
         (BLOCKED_AGAIN, signal.SIGINT, 1, [".py:11 in work blocks", ".py:15 in on_shutdown blocks"]),
+        (
+            READING,
+            signal.SIGINT,
+            1,
+            ["ended without cleanup", ".py:11 in read_port, thread 'port'; give a thread daemon="],
+        ),
+        (POOLED, signal.SIGTERM, 1, ["ended without cleanup", "a thread in code outside this program"]),
         (SLOW, signal.SIGINT, 0, ["clean", "saved"]),
     ],
 )
@@ -198,6 +234,20 @@ def test_programs_that_are_asked_to_end(
     for answer in answers:
         assert answer in started.text
     assert ("ended without cleanup" in started.text) == (answers[0] == "ended without cleanup")
+
+
+@pytest.mark.real
+def test_a_second_signal_ends_a_process_that_waits_for_a_thread(machine: Machine, tmp_path: Path) -> None:
+    """As the reminder says."""
+    file = tmp_path / "program.py"
+    file.write_text(HASTY.replace("LIMIT, stop", "REMIND_AFTER, stop", 1).replace("= 0.8", "= 0.1") + READING)
+    started = machine.start_python(str(file))
+    started.wait_for("up")
+    started.process.send_signal(signal.SIGINT)
+    started.wait_for("still stopping (waiting for ")
+    started.process.send_signal(signal.SIGINT)
+    assert started.wait() == 1
+    assert "ended without cleanup: it was asked twice" in started.text
 
 
 def test_a_thread_that_works_is_named() -> None:
