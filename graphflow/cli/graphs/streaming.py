@@ -9,7 +9,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -206,9 +206,11 @@ class _Stream:
 
     def _show(self, event: Event) -> int | None:
         """Show one event; return the exit code if it is the last."""
-        if self._as_json and event["event"] in _PUBLISHED:
-            self._print_json(event)
-        self._print(event)
+        # A graph in the background goes on when nobody reads any more, as in `up -d GRAPH 2>&1 | head -1`.
+        with suppress(BrokenPipeError) if self._detach else nullcontext():
+            if self._as_json and event["event"] in _PUBLISHED:
+                self._print_json(event)
+            self._print(event)
         match event["event"]:
             case "up":
                 self._is_up = True

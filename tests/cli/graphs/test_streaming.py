@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.cli import exits
+from graphflow.cli import exits, output
 from graphflow.cli.graphs.streaming import LogReader, _Stream, how_ended
 from graphflow.supervisor.control.client import ControlClient
 from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, RunDirectory
@@ -158,6 +158,20 @@ def test_events_for_programs(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     )
     assert (log["event"], log["node"], log["text"]) == ("log", "a", "hello")
     assert "graph lab is up" in err
+
+
+def test_a_reader_that_goes_away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A graph in the background goes on, as behind `| head -1`; one in the foreground is ended by the error."""
+
+    def closed(_: str) -> None:
+        raise BrokenPipeError
+
+    monkeypatch.setattr(output, "talk", closed)
+    detached = streaming(tmp_path, detach=True)
+    assert detached._show({"event": "up", "seconds": 0.25}) is None
+    assert detached._show({"event": "checked"}) == exits.OK
+    with pytest.raises(BrokenPipeError):
+        streaming(tmp_path)._show({"event": "up", "seconds": 0.25})
 
 
 def test_the_greeting(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
