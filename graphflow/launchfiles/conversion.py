@@ -15,6 +15,7 @@ Source: launch and launch_ros, the parsers of their frontends; the design articl
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
@@ -335,7 +336,11 @@ class _Translation:
             return
         if needs_shell:
             words = ["sh", "-c", line]
-        words = [*words_of(item.entries.get("launch-prefix")), *words]
+        before = item.entries.get("launch-prefix")
+        if before is not None and "$(" in str(before.value):  # it may become several words, or none
+            words = ["sh", "-c", f"exec {before.value} {shlex.join(words)}"]
+        else:
+            words = [*words_of(before), *words]
         if "cwd" in item.entries:
             words = ["env", "-C", str(item.entries["cwd"].value), *words]
         if words[:1] == ["ros2"]:  # graphflow has ros2's commands, and need not find it on the PATH

@@ -40,11 +40,13 @@ def setting(name: str, item: Item, complain: Complain) -> tuple[str, Item]:
         case "append_env":
             named, get = pair(item, "name", "value", complain), item.entries.get
             separator = str(get("separator", Item(":", item.place)).value)
-            is_first = has_value(item, "prepend", "true", "1")
+            is_first = has_value(item, "prepend", "true", "1", "yes")
             found: dict[str, Item] = {}
             for name, value in named.entries.items():
-                parts = [f"$(optenv {name})", str(value.value)]
-                found[name] = value.with_value(separator.join(parts[::-1] if is_first else parts))
+                # The separator follows a former value alone.
+                old, new = f"$(optenv {name})", str(value.value)
+                between = f"$(if $(not-equals '{old}' '') {as_word(separator)} '')"
+                found[name] = value.with_value(f"{new}{between}{old}" if is_first else f"{old}{between}{new}")
             return "env", named.with_value(found)
         case _:
             return "env", pair(item, "name", "value", complain)

@@ -315,12 +315,9 @@ class Substitutions:
 
 
 def _default(given: list[Word]) -> Data:
-    """Return the default after a name: text in quotes, or a YAML scalar."""
+    """Return the default after a name: text in quotes, or what is parsed as YAML where a value is needed."""
     text = _joined(given)
-    try:
-        return text if given[0].is_quoted else scalar(text)
-    except ValueError:  # a number with too many digits
-        return text
+    return text if given[0].is_quoted else Written(text)
 
 
 def _joined(given: Sequence[Word]) -> str:

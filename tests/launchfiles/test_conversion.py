@@ -201,7 +201,15 @@ SIM = {"sim": {"class": "nodes.turtlesim:TurtleSim"}}
         (
             "[{append_env: {name: P, value: /a}}, {append_env: {name: Q, value: b, prepend: 'true', separator: ' '}}, "
             "{node: {pkg: turtlesim, exec: turtlesim_node, name: sim}}]",
-            {"group": {"env": {"P": "$(optenv P):/a"}, "group": {"env": {"Q": "b $(optenv Q)"}, "nodes": SIM}}},
+            {
+                "group": {
+                    "env": {"P": "$(optenv P)$(if $(not-equals '$(optenv P)' '') : '')/a"},
+                    "group": {
+                        "env": {"Q": "b$(if $(not-equals '$(optenv Q)' '') ' ' '')$(optenv Q)"},
+                        "nodes": SIM,
+                    },
+                }
+            },
         ),
         (
             "[{node: {pkg: turtlesim, exec: turtlesim_node, name: a, namespace: n}}, {node: {pkg: turtlesim, exec: "

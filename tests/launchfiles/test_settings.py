@@ -27,7 +27,11 @@ def complained(place: Place, text: str) -> None:
         ("set_use_sim_time", {"value": "true"}, ("params", {"use_sim_time": True})),
         ("set_remap", {"from": "a", "to": "b"}, ("remap", {"a": "b"})),
         ("set_env", {"name": "A", "value": "1"}, ("env", {"A": "1"})),
-        ("append_env", {"name": "A", "value": "x", "prepend": "true"}, ("env", {"A": "x:$(optenv A)"})),
+        (
+            "append_env",
+            {"name": "A", "value": "x", "prepend": "true"},
+            ("env", {"A": "x$(if $(not-equals '$(optenv A)' '') : '')$(optenv A)"}),
+        ),
     ],
 )
 def test_what_holds_for_all_that_follows(name: str, said: Any, expected: tuple[str, Any]) -> None:

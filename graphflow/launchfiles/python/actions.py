@@ -125,7 +125,10 @@ def _set_remap(call: RecordedCall) -> Action:
 
 def _group(call: RecordedCall) -> Action:
     is_scoped, outer = bool(call.get("scoped", default=True)), (dict(RECORDING.set), dict(RECORDING.env))
-    children = _actions(_actions_argument(call, 0))
+    own = {text(key): text(value) for key, value in (call.get("launch_configurations", default=None) or {}).items()}
+    RECORDING.set |= own
+    settings = [Action("let", {"name": name, "value": value}, call.line) for name, value in own.items()]
+    children = [*settings, *_actions(_actions_argument(call, 0))]
     # launch restores configurations and environment at the end of a scoped group; functions after it see neither.
     if is_scoped:
         RECORDING.set, RECORDING.env = outer

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 
@@ -129,7 +130,11 @@ def _params(call: RecordedCall) -> list[Data]:
     params: list[Data] = []
     for given in _list(call, "parameters", "[{'rate': 2.0}]"):
         if isinstance(given, dict):
-            params += [parameter(key, value) for key, value in given.items()]
+            for key, value in given.items():
+                if not _is_value(value):
+                    fault = f"parameters: {text(key)!r} has {called_as(value)}: it takes a number, text, truth or list"
+                    RECORDING.problem(call, f"{fault} of one of these")
+                params.append(parameter(key, value))
         elif isinstance(given, RecordedCall) and given.kind == "Parameter":
             params.append(parameter(given.get("name", 0), given))
         elif isinstance(given, (set, int, float)):
@@ -173,6 +178,18 @@ def components(call: RecordedCall) -> list[Data]:
             attributes = {key: value for key, value in node(one).items() if key != "exec"}
             found.append({**attributes, "plugin": text(one.get("plugin")), **condition_of(one)})
     return found
+
+
+def _is_value(value: object) -> bool:
+    """Whether ROS takes a value for a parameter: no list in a list, unless that consists of substitutions and texts."""
+    if isinstance(value, dict):
+        return all(map(_is_value, value.values()))
+    parts = value if isinstance(value, (list, tuple)) else [value]
+    inner = [one for part in parts for one in (part if isinstance(part, (list, tuple)) else ())]
+    plains = [part for part in parts if not isinstance(part, (list, tuple))]
+    return all(isinstance(one, (bool, int, float, str, RecordedCall, os.PathLike)) for one in plains) and all(
+        isinstance(one, (str, RecordedCall)) for one in inner
+    )
 
 
 def parameter(name: object, value: object) -> dict[str, Data]:

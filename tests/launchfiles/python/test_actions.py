@@ -228,3 +228,30 @@ def test_arguments_that_are_no_pairs(problems: list[Finding]) -> None:
     actions([wrong])
     [problem] = problems
     assert problem["message"].endswith("launch_arguments is a list of pairs: write .items() behind the dict")
+
+
+@pytest.mark.parametrize(
+    ("value", "is_refused"),
+    [([1, [3, 4]], True), ([[1, 2], [3, 4]], True), ({1, 2}, True), (object(), True), ([1, 2], False), ("a", False)],
+)
+def test_values_that_are_no_parameters(problems: list[Finding], value: object, is_refused: bool) -> None:
+    """Lists in lists and other objects are refused, as by launch, which knows them too late to name the line."""
+    actions([said("Node", package="p", executable="e", parameters=[{"gains": value}])])
+    assert [p["message"].startswith("parameters: 'gains' has ") for p in problems] == ([True] if is_refused else [])
+
+
+def test_substitutions_in_a_list_of_values(problems: list[Finding]) -> None:
+    """A list of texts and substitutions in a list is a text."""
+    parts = [[said("LaunchConfiguration", "n"), "1"], "b"]
+    [made] = actions([said("Node", package="p", executable="e", parameters=[{"names": parts}])])
+    assert made["node"]["param"][0]["value"] == ["$(var n)1", "b"]
+    assert problems == []
+
+
+def test_configurations_of_a_group() -> None:
+    """They hold for its actions alone."""
+    inner = [said("LogInfo", msg=said("LaunchConfiguration", "ns"))]
+    [made] = actions([said("GroupAction", inner, launch_configurations={"ns": "inner"})])
+    let, log = made["group"]["children"]
+    assert let["let"] == {"name": "ns", "value": "inner", "line": 7}
+    assert log["log"]["message"] == "$(var ns)"
