@@ -77,6 +77,16 @@ def test_a_step_may_stop_the_graph(machine: Machine, project: Path) -> None:
     assert "stopping (it is late)" in up.text
 
 
+@pytest.mark.real
+@pytest.mark.parametrize("nodes", ["nodes:\n  /short: {command: ['true']}\n", ""])
+def test_a_graph_ends_after_its_last_step(machine: Machine, project: Path, nodes: str) -> None:
+    """A delay keeps it up after its processes have ended; without any process it ends with its steps."""
+    steps = "steps:\n  late: {delay: 0.3}\n  end: {log: it is late, after: late}\n"
+    up = machine.start("up", write(project, nodes + steps), cwd=project)
+    assert up.wait() == 0
+    assert up.text.index("it is late") < up.text.index("has ended")
+
+
 TYPE = "example_interfaces/srv/AddTwoInts"
 
 
