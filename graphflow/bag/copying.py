@@ -16,12 +16,40 @@ TOLD_EVERY = 100
 """Number of messages between two reports of progress."""
 
 
+def joined(bags: Sequence[Bag], choice: Choice, remaps: Mapping[str, str]) -> dict[str, Topic]:
+    """Return the topics to copy, by their names in the bags; those of one new name become one.
+
+    Args:
+        bags: The sources.
+        choice: The topics to copy.
+        remaps: New names by names in the bags.
+
+    Raises:
+        BagError: Two bags have different types, or different definitions of a type, on a topic.
+    """
+    names: dict[str, str] = {}
+    found: dict[str, Topic] = {}
+    for bag in bags:
+        for name, topic in bag.contents.topics.items():
+            if not choice.wants(name, topic.type):
+                continue
+            new = topic._replace(name=remaps.get(name, name))
+            known = found.setdefault(new.name, new)
+            # Older distributions write no hash.
+            is_other = known.hash != new.hash and bool(known.hash and new.hash)
+            if is_other or (known.type, known.encoding) != (new.type, new.encoding):
+                other = known.type if known.type != new.type else "another definition of it"
+                raise BagError(f"{bag.path}: {name} is of type {new.type}, and of {other} in another")
+            found[new.name] = known if known.hash else new
+            names[name] = new.name
+    return {name: found[new] for name, new in names.items()}
+
+
 def copy(
     bags: Sequence[Bag],
     writer: BagWriter,
-    choice: Choice,
+    topics: Mapping[str, Topic],
     *,
-    remaps: Mapping[str, str] | None = None,
     start_ns: int = 0,
     end_ns: int | None = None,
     on_progress: Callable[[int, int | None], object] = lambda *_: None,
@@ -29,10 +57,9 @@ def copy(
     """Write the messages of bags into another, in the order of their times; returns its contents.
 
     Args:
-        bags: The sources; topics of the same name become one.
+        bags: The sources.
         writer: The target, which stays open.
-        choice: The topics to copy.
-        remaps: New names by names in the bags.
+        topics: The topics to copy, as `joined` returns them.
         start_ns: Earliest time, nanoseconds since 1970.
         end_ns: Time before which messages are copied.
         on_progress: Called now and then with the number of messages so far, and of all; None if that is not known.
@@ -40,18 +67,8 @@ def copy(
     Raises:
         BagError: A source cannot be read, or the target cannot be written.
     """
-    topics: dict[str, Topic] = {}
-    written: dict[str, Topic] = {}
-    for bag in bags:
-        for name, topic in bag.contents.topics.items():
-            if choice.wants(name, topic.type):
-                new = topic._replace(name=(remaps or {}).get(name, name))
-                known = written.setdefault(new.name, new)
-                if (known.type, known.hash, known.encoding) != (new.type, new.hash, new.encoding):
-                    other = known.type if known.type != new.type else "another definition of it"
-                    raise BagError(f"{bag.path}: {name} is of type {new.type}, and of {other} in another")
-                topics.setdefault(name, known)
-                writer.declare(known)
+    for topic in dict.fromkeys(topics.values()):
+        writer.declare(topic)
     parts = [bag.records(topics, start_ns, end_ns) for bag in bags]
     is_whole = not start_ns and end_ns is None
     total = sum(bag.contents.counts[name] for bag in bags for name in topics.keys() & bag.contents.counts.keys())

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from graphflow.bag import copying
-from graphflow.bag.copying import beside, copy, times
+from graphflow.bag.copying import beside, copy, joined, times
 from graphflow.bag.reader import Bag
 from graphflow.bag.topic_choice import Choice
 from graphflow.bag.writer import BagWriter
@@ -18,9 +19,10 @@ from tests.bag.cast import COUNT, START, record, some_records, write
 ALL = Choice(all=True, hidden=True, all_services=True)
 
 
-def made(bags: list[Bag], folder: Path, choice: Choice = ALL, **options: object) -> Bag:
+def made(bags: list[Bag], folder: Path, choice: Choice = ALL, **options: Any) -> Bag:
+    remaps = options.pop("remaps", {})
     with BagWriter(folder) as writer:
-        copy(bags, writer, choice, **options)  # type: ignore[arg-type]
+        copy(bags, writer, joined(bags, choice, remaps), **options)
     return Bag(folder)
 
 
@@ -64,6 +66,18 @@ def test_one_topic_of_two_types(tmp_path: Path) -> None:
     bags = [Bag(write(tmp_path / "a")), Bag(write(tmp_path / "b", [other]))]
     with pytest.raises(BagError, match="/chatter is of type std_msgs/msg/Int32, and of std_msgs/msg/String in another"):
         made(bags, tmp_path / "c")
+
+
+def test_a_topic_whose_hash_one_bag_lacks(tmp_path: Path) -> None:
+    """Older distributions write none: the two are one topic, with the hash of the other bag; a wrong one is not."""
+    plain = record(COUNT._replace(hash=""), Int32(data=1), 0.0)
+    first, second = Bag(write(tmp_path / "a", [plain])), Bag(write(tmp_path / "b"))
+    whole = made([first, second], tmp_path / "c")
+    assert whole.contents.topics[COUNT.name].hash == COUNT.hash
+    assert whole.contents.counts[COUNT.name] == 1 + second.contents.counts[COUNT.name]
+    wrong = Bag(write(tmp_path / "d", [record(COUNT._replace(hash="RIHS01_" + "0" * 64), Int32(), 0.0)]))
+    with pytest.raises(BagError, match="and of another definition of it in another"):
+        made([second, wrong], tmp_path / "e")
 
 
 def test_times(tmp_path: Path) -> None:

@@ -398,7 +398,7 @@ def _progress(folder: Path) -> Callable[[int, int | None], None]:
 
 
 def _copy_bags(paths: tuple[Path, ...], word: str, options: dict[str, Any], choice: Choice | None = None) -> int:
-    from graphflow.bag.copying import beside, copy, times
+    from graphflow.bag.copying import beside, copy, joined, times
     from graphflow.bag.info import size, topics_of
     from graphflow.bag.missing import check_messages, remarks
     from graphflow.bag.reader import Bag
@@ -418,12 +418,13 @@ def _copy_bags(paths: tuple[Path, ...], word: str, options: dict[str, Any], choi
     wanted = {name for bag in bags for name, topic in bag.contents.topics.items() if every.wants(name, topic.type)}
     check_messages(bags, wanted, absent, start_ns, end_ns)
     _note(paths[0], absent)
+    topics = joined(bags, every, remaps)
     size_limit, seconds = options["max_bag_size"], options.get("max_seconds", 0.0)
     packed = {"storage": options["storage"], "compression": chunk_compression(options)}
     with BagWriter(folder, **packed, max_size=size_limit, max_seconds=seconds) as writer:
         try:
             show = _progress(folder)
-            copied = copy(bags, writer, every, remaps=remaps, start_ns=start_ns, end_ns=end_ns, on_progress=show)
+            copied = copy(bags, writer, topics, start_ns=start_ns, end_ns=end_ns, on_progress=show)
         finally:
             output.progress("")
     output.data(f"{folder}: {copied.message_count:,} messages of {topics_of(len(copied.topics))}, {size(writer.size)}")
