@@ -15,6 +15,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import islice
 from types import CodeType, CoroutineType, FrameType, GeneratorType
 from typing import Any
 
@@ -33,6 +34,14 @@ class Frame:
     f_globals: dict[str, Any]
     original: FrameType
     """The frame itself, for comparisons; its locals must not be read."""
+    f_lasti: int = -1
+    """Offset of the current instruction; negative if it is not known."""
+
+    @property
+    def column(self) -> int | None:
+        """Where the current expression begins in its line, as a syntax tree counts; None if that is not known."""
+        positions = islice(self.f_code.co_positions(), max(self.f_lasti, 0) // 2, None)
+        return next((column for _, _, column, _ in positions), None) if self.f_lasti >= 0 else None
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Frame) and self.original is other.original
@@ -65,11 +74,11 @@ def running(frame: FrameType) -> Frame:
     A function's frame outlives the function. A generator's frame has a caller as long as it runs, and keeps it when it
     ends by itself; one without a caller is suspended or was closed, and its locals are left alone.
     """
-    code, lineno = frame.f_code, frame.f_lineno or 0
+    code, lineno, lasti = frame.f_code, frame.f_lineno or 0, frame.f_lasti
     names: dict[str, Any] = {}
     if not code.co_flags & _OWNED or frame.f_back is not None:
         names = {**frame.f_locals}
-    return Frame(code, lineno, names, frame.f_globals, frame)
+    return Frame(code, lineno, names, frame.f_globals, frame, lasti)
 
 
 def suspended(owner: object) -> Frame | None:
@@ -90,7 +99,7 @@ def suspended(owner: object) -> Frame | None:
             names = {**frame.f_locals}
         else:
             return None
-    return Frame(frame.f_code, frame.f_lineno or 0, names, frame.f_globals, frame)
+    return Frame(frame.f_code, frame.f_lineno or 0, names, frame.f_globals, frame, frame.f_lasti)
 
 
 def code_of(owner: object) -> CodeType | None:

@@ -46,10 +46,9 @@ class Changers(NamedTuple):
 
 
 def polled(loop: ast.While, methods: Methods) -> Polled | None:
-    """Return a loop that pauses in its body, or does nothing there; None for a loop that works."""
-    calls = [last_name(node.func) for node in _inside(loop.body) if isinstance(node, ast.Call)]
-    if {"sleep", "spin_once"}.isdisjoint(calls) and not all(isinstance(statement, ast.Pass) for statement in loop.body):
-        return None
+    """Return a loop that pauses in its body, or does nothing there to end it; None for a loop that works."""
+    calls = [node for node in _inside(loop.body) if isinstance(node, ast.Call)]
+    pauses = not {"sleep", "spin_once"}.isdisjoint(last_name(call.func) for call in calls)
     queries = [node for node in _inside([loop.test]) if isinstance(node, ast.Call)]
     gives_up = any(last_name(call.func) in _TIME for call in queries)
     leaves = any(
@@ -61,8 +60,25 @@ def polled(loop: ast.While, methods: Methods) -> Polled | None:
     text = f"`while {ast.unparse(loop.test)}`"
     flags = _read(loop.test, methods, set())
     if leaves or flags is None or any(_changes(statement, flag) for statement in loop.body for flag in flags):
-        return Polled(text, frozenset(), gives_up)
+        return Polled(text, frozenset(), gives_up) if pauses or _is_empty(loop) else None
+    # Without a pause it is a poll only if no call in its body may end it, as a method of the node may, or a function.
+    if not pauses and any(_may_end(call.func, methods) for call in calls):
+        return None
     return Polled(text, frozenset(flags), gives_up)
+
+
+def _may_end(function: ast.expr, methods: Methods) -> bool:
+    """Whether a call may end the loop around it: of a method of the node, or of a function that may call one."""
+    match function:
+        case ast.Attribute(value=ast.Name("self"), attr=name):
+            return name in methods
+        case ast.Name(id=name):
+            return name not in _PLAIN and not name[:1].isupper()
+    return False
+
+
+def _is_empty(loop: ast.While) -> bool:
+    return all(isinstance(statement, ast.Pass) for statement in loop.body)
 
 
 def written_from_outside(tree: ast.Module) -> frozenset[str]:

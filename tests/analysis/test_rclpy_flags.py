@@ -70,6 +70,7 @@ def file(
         ("while rclpy.ok() and not self.there: time.sleep(0.1)", SETS),
         ("while not self.is_done(): time.sleep(0.1)", "self.keep(message.data)"),
         ("while not self.there: pass", SETS),
+        ("while not self.there: self.pub.publish(Twist())", SETS),
         ("while not self.there: rclpy.spin_once(self)", SETS),
         ("self.arrived.wait()", "self.arrived.set()"),
     ],

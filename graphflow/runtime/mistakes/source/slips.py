@@ -18,7 +18,7 @@ from pathlib import Path
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.mistakes import native_source
-from graphflow.analysis.syntax import FunctionNode, syntax_of, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, syntax_of, walk
 from graphflow.analysis.user_code import is_installed, is_users_module
 from graphflow.errors import Place
 from graphflow.names import nearest
@@ -120,10 +120,15 @@ def _text(file: str) -> str:
 
 @cache
 def words_in(module: ast.Module) -> set[str]:
-    """Return the attributes and names that a module reads, and the words in its strings."""
+    """Return the attributes and names that a module reads, and its strings, but for texts that are only shown."""
     found: set[str] = set()
+    shown: set[ast.expr] = set()
     for node in ast.walk(module):
         match node:
+            case ast.Call(func=function, args=arguments) if last_name(function) in _SHOWING:
+                shown.update(arguments)
+            case ast.Constant() if node in shown:
+                continue
             case (
                 ast.Attribute(attr=word, ctx=ast.Load())
                 | ast.Name(id=word, ctx=ast.Load())
@@ -165,6 +170,8 @@ def _hook_meant(cls: type, name: str) -> str:
     return f"derive {cls.__name__} from LifecycleNode, whose nodes are configured and activated, or write on_start"
 
 
+_SHOWING = ("print", "debug", "info", "warning", "warn", "error", "exception", "critical", "fatal", "log")
+"""Functions whose texts name nothing: a handler often logs its own name."""
 _HOOKS = {
     "on_start": ("init", "begin", "startup", "ready", "open", "run"),
     "on_shutdown": ("stop", "end", "exit", "close", "destroy", "finish", "cleanup"),

@@ -53,6 +53,10 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
     ("body", "told"),
     [
         ("async def heard(self, message: String) -> None: ...", LOOKS.format("heard", SUBSCRIPTION)),
+        (
+            "async def heard(self, message: String) -> None:\n    self.log.info('heard')",
+            LOOKS.format("heard", SUBSCRIPTION),
+        ),
         ("def add(self, request: AddTwoInts.Request): ...", LOOKS.format("add", SERVICE)),
         ("def on_pose(self, message): ...", LOOKS.format("on_pose", SUBSCRIPTION)),
         (

@@ -31,7 +31,7 @@ def entered_at(frame: Frame) -> Entering | None:
         return None
     found = []
     for block, expression in _entries(function):
-        if expression.lineno <= frame.f_lineno < block.body[0].lineno:  # on one line, it may be inside
+        if expression.lineno <= frame.f_lineno <= block.body[0].lineno and not _is_in_body(frame, block):
             found.append(expression)
     for expression, call in _calls(function, "acquire"):
         if call.lineno <= frame.f_lineno <= (call.end_lineno or 0):
@@ -49,8 +49,7 @@ def is_inside(frame: Frame, lock: object) -> bool:
     except Unknown:
         return False
     for block, expression in _entries(function):
-        is_in = block.body[0].lineno <= frame.f_lineno <= (block.end_lineno or 0)
-        if is_in and _value(expression, frame) is lock:
+        if _is_in_body(frame, block) and _value(expression, frame) is lock:
             return True
     taken, given = (
         [call.lineno for expression, call in _calls(function, way) if _value(expression, frame) is lock]
@@ -104,6 +103,14 @@ def _is_let_go(syntax: Syntax, name: str) -> bool:
         if is_read and not isinstance(parents[-1], (ast.withitem, ast.Attribute)):
             return True
     return False
+
+
+def _is_in_body(frame: Frame, block: ast.With) -> bool:
+    """Whether a frame is in the body of a `with`, which may stand on its line."""
+    first = block.body[0]
+    if frame.f_lineno == first.lineno and frame.column is not None:
+        return frame.column >= first.col_offset
+    return first.lineno <= frame.f_lineno <= (block.end_lineno or 0)
 
 
 def _entries(function: ast.AST) -> Iterator[tuple[ast.With, ast.expr]]:

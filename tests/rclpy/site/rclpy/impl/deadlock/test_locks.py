@@ -43,9 +43,12 @@ def test_who_may_be_inside_or_not(way: str) -> None:
         assert not is_inside(frame, value)
 
 
-def test_on_one_line_nobody_knows_who_enters_and_who_is_inside() -> None:
-    """So it is nobody who waits."""
-    assert entered_at(after_a_step(Bank().is_inside_on_one_line())) is None
+def test_a_body_on_the_same_line() -> None:
+    """The column tells who is inside."""
+    bank = Bank()
+    frame = after_a_step(bank.is_inside_on_one_line())
+    assert entered_at(frame) is None
+    assert is_inside(frame, bank.first)
 
 
 @pytest.mark.parametrize(
@@ -65,7 +68,7 @@ def test_locks_that_others_may_release(text: str, kept: bool) -> None:
     assert is_kept(Entering(object(), text), [frame]) is kept
 
 
-@pytest.mark.parametrize("way", ["enters", "acquires", "enters_part"])
+@pytest.mark.parametrize("way", ["enters", "acquires", "enters_part", "is_inside_on_one_line"])
 def test_code_that_waits_is_where_it_enters(way: str) -> None:
     """As soon as it stands there."""
     bank, seen = Bank(), threading.Event()
