@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from graphflow.domain import domain_id
-from graphflow.machines.domains import COMMANDS, SHOWN, by_domain
+from graphflow.machines.domains import COMMANDS, SHOWN, by_domain, remedy
 from graphflow.transport.client import Client
 from graphflow.wire.liveliness import NODES
 
@@ -26,4 +26,4 @@ def nothing_here(what: str) -> str:
     counts = sorted(others.items())[:SHOWN]
     is_one = counts[0][1] == 1
     listing = ", ".join(f"{n} node{'s' if n > 1 else ''} in domain {d}" for d, n in counts)
-    return f"{what} in domain {here}; there {'is' if is_one else 'are'} {listing}: {COMMANDS.format(min(others))}"
+    return f"{what} in domain {here}; there {'is' if is_one else 'are'} {listing}: {remedy(COMMANDS, others)}"

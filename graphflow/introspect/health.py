@@ -176,7 +176,8 @@ def _floods(then: Counts, now: Counts, seconds: float) -> Iterator[str]:
             reported = now[node, part].get("rate")
             rate = _rate(then, now, (node, part), ("lines", "gathered"), seconds) if reported is None else reported
             if rate >= FLOOD:
-                yield f"{node} logs {rate:.0f} lines per second: limit them with throttle=1.0"
+                way = "throttle=1.0, in rclpy throttle_duration_sec=1.0"
+                yield f"{node} logs {rate:.0f} lines per second: limit them with {way}"
 
 
 def _refused(cache: GraphCache) -> Iterator[str]:

@@ -20,6 +20,15 @@ def by_domain(tokens: Iterable[str], own: Collection[str] = ()) -> Counter[int]:
     return Counter(e.domain for e in nodes if not is_hidden(e.node_name) and e.node_name not in own)
 
 
+def remedy(way: str, domains: Collection[int]) -> str:
+    """Return a remedy with the only other domain, or with `N` if there are several to choose from.
+
+    Args:
+        way: The remedy, with `{}` for the domain.
+    """
+    return way.format(*domains) if len(domains) == 1 else way.format("N")
+
+
 def elsewhere(domain: int, tokens: Iterable[str], way: str, own: Collection[str] = ()) -> str:
     """Return a hint that a domain has no nodes except those in `own`, and which other domains have some.
 
@@ -34,4 +43,4 @@ def elsewhere(domain: int, tokens: Iterable[str], way: str, own: Collection[str]
     if domain in nodes or not nodes:
         return ""
     listing = ", ".join(f"domain {other} has {count}" for other, count in sorted(nodes.items())[:SHOWN])
-    return f"this domain, {domain}, has no other nodes; {listing}: {way.format(min(nodes))}"
+    return f"this domain, {domain}, has no other nodes; {listing}: {remedy(way, nodes)}"

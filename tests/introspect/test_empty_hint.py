@@ -31,7 +31,7 @@ class Seen:
         ),
         (
             ["9/a", "7/b", "7/c"],
-            "there are 2 nodes in domain 7, 1 node in domain 9: graphflow --domain 7 ...",
+            "there are 2 nodes in domain 7, 1 node in domain 9: graphflow --domain N ...",
         ),
         (
             ["9/a"],

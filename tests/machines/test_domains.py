@@ -24,7 +24,7 @@ def test_nodes_are_counted() -> None:
     ("nodes", "told"),
     [
         (["112/own", "111/sim"], "this domain, 112, has no other nodes; domain 111 has 1: go to 111"),
-        (["7/a", "9/b", "7/c"], "this domain, 112, has no other nodes; domain 7 has 2, domain 9 has 1: go to 7"),
+        (["7/a", "9/b", "7/c"], "this domain, 112, has no other nodes; domain 7 has 2, domain 9 has 1: go to N"),
         (["112/own", "112/other", "111/sim"], ""),
         (["112/own", "111/_hidden"], ""),
         ([], ""),

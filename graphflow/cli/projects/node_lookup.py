@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shlex
 import sys
 import traceback
 from collections.abc import Sequence
@@ -179,12 +180,17 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
         *project_nodes(root)
     }
     if words and not words[0].startswith("-"):  # ROS's PKG EXE
+        file = Path(what, f"{words[0].removesuffix('.py')}.py")
+        if file.is_file():
+            return f"{what!r} is a folder, and no package: graphflow run {shlex.quote(str(file))}"
         near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
         meant = f"; did you mean {near!r}?" if near is not None else ""
         if substitute := no_package(what):
             return substitute
         known_here = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
         return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or known_here}"
+    if "/" not in what and (file := _below(Path(), f"{what}.py")) is not None:
+        return f"there is no node {what!r}; did you mean '{file}'?"
     known |= {*(package for package, _ in with_graphflow()), *packages, *installed()}
     known |= {name for one in installed().values() for name in one.nodes}
     return f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}"
@@ -210,15 +216,20 @@ def _is_loaded_from_elsewhere(name: str, file: Path) -> bool:
 def _instead_of(file: Path) -> str:
     """Suggest another file: of the same name in a folder below or with graphflow, or of a similar name."""
     above = file.parent if file.parent.is_dir() else Path()
-    for at, folders, names in islice(os.walk(above), FOLDERS):
-        folders[:] = sorted(folder for folder in folders if not folder.startswith((".", "venv")))
-        if file.name in names and "launch" in file.name:
-            return f"; to start it: graphflow launch {Path(at, file.name)}"
-        if file.name in names:
-            return f"; did you mean {str(Path(at, file.name))!r}?"
+    if (found := _below(above, file.name)) is not None:
+        return f"; to start it: graphflow launch {found}" if "launch" in file.name else f"; did you mean '{found}'?"
     if file.parent.name in ("", "nodes") and (demos_root() / "nodes" / file.name).is_file():
         return f"; {file.name} comes with graphflow: graphflow run {file.stem}"
     return did_you_mean(str(file), [str(found) for found in above.glob("*.py")])
+
+
+def _below(above: Path, name: str) -> Path | None:
+    """Return the first file of a name in a folder or below it."""
+    for at, folders, names in islice(os.walk(above), FOLDERS):
+        folders[:] = sorted(folder for folder in folders if not folder.startswith((".", "venv")))
+        if name in names:
+            return Path(at, name)
+    return None
 
 
 def _only(module: str) -> type[Node]:

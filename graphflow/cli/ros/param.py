@@ -16,6 +16,7 @@ from graphflow.cli.verbs import GraphVerbs, Verb
 from graphflow.cli.words import ValueCommand, pattern_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
+from graphflow.introspect.empty_hint import nothing_here
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.parameters import RemoteParameters, as_declared, read_value
 from graphflow.names import did_you_mean, is_hidden
@@ -82,7 +83,9 @@ def list_(
     if as_json:
         output.as_json(found)
         return
-    if (pattern or param_prefixes) and not any(found.values()):
+    if not nodes:
+        output.talk(nothing_here("no nodes"))
+    elif (pattern or param_prefixes) and not any(found.values()):
         output.talk("no parameter matches; without --filter and --param-prefixes, all are listed")
     for node, names_and_types in found.items():
         if not name:

@@ -272,6 +272,8 @@ class ThreadedClient(Endpoint):
         self._changed = changed
         self.lost = 0
         """Calls whose server was missing or went away."""
+        self.was_served = False
+        """Whether a call was sent while there was a server."""
         self._sequence = 0
         self._lock = threading.Lock()
 
@@ -301,6 +303,7 @@ class ThreadedClient(Endpoint):
         caller, gid = self._caller, self._announced().gid
         if caller is None:
             raise ClosedError(f"the client of {self.name} is closed")
+        self.was_served = self.was_served or self.has_server
         with self._lock:
             self._sequence += 1
             sequence = self._sequence

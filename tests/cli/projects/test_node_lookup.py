@@ -71,6 +71,8 @@ def test_the_only_class(what: str, project: Path) -> None:
             "left_lamp; or run its file: graphflow run own_nodes/left-lamp.py",
         ),
         ("slide.py", [], "slide.py: there is no such file; did you mean 'own_nodes/slide.py'?"),
+        ("slide", [], "there is no node 'slide'; did you mean 'own_nodes/slide.py'?"),
+        ("own_nodes", ["slide"], "'own_nodes' is a folder, and no package: graphflow run own_nodes/slide.py"),
         ("nodes/talker.py", [], "there is no such file; talker.py comes with graphflow: graphflow run talker"),
         ("turtlesim/turtlesim_node", [], "is not a node; write a space: graphflow run turtlesim turtlesim_node"),
         ("graphs/lamps.yaml", [], "graphs/lamps.yaml is a graph file: graphflow up graphs/lamps.yaml"),

@@ -79,7 +79,7 @@ class Unserved:
             return
         self._known.add(known)
         wait = "wait_for_service()" if isinstance(client, Client) else "wait_for_server()"
-        if client in self._served:
+        if client in self._served or any(endpoint.was_served for endpoint in clients_of(client)):
             why = f"the server of {role_of(client).handler} came after it, or went away before it answered"
         else:
             why = nobody(client, self._context.cache)
