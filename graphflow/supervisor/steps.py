@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Collection, Iterable
 from typing import Any
 
 from graphflow.errors import ParameterError, ServiceUnavailable
@@ -20,6 +20,15 @@ from graphflow.wire.liveliness import Kind
 
 _DOUBLE, _DOUBLES = 3, 8
 """Values of rcl_interfaces/msg/ParameterType."""
+
+
+def keep_up(steps: Iterable[PlannedStep], running: Collection[str], *, has_processes: bool) -> bool:
+    """Whether running steps keep a graph up whose processes have all ended: delays do, without processes all do.
+
+    Args:
+        running: Names of steps, as `step NAME`.
+    """
+    return any(f"step {step.name}" in running and (step.do == "delay" or not has_processes) for step in steps)
 
 
 class StepRunner:

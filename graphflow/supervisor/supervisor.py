@@ -29,7 +29,7 @@ from graphflow.supervisor.processes.process import Process
 from graphflow.supervisor.processes.starter import Starter
 from graphflow.supervisor.rundir import log_file
 from graphflow.supervisor.start_order import SLOW_START, needs_of_up, restarted_with, start_order, waits
-from graphflow.supervisor.steps import StepRunner
+from graphflow.supervisor.steps import StepRunner, keep_up
 
 if TYPE_CHECKING:
     from graphflow.supervisor.control.messages import Hello, NodeRow
@@ -274,8 +274,8 @@ class Supervisor:
                 self._apply(self._processes[name], Event.GO)
             elif name not in self._step_tasks:
                 planned = next(s for s in self.plan.steps if f"step {s.name}" == name)
-                task = self._step_tasks[name] = asyncio.create_task(self._run_step(planned), name=name)
-                task.add_done_callback(lambda _: self._end_if_all_have())
+                self._step_tasks[name] = asyncio.create_task(self._run_step(planned), name=name)
+                self._step_tasks[name].add_done_callback(lambda _: self._end_if_all_have())
         if not self.up.is_set() and self._needed_for_up <= self._met:
             self.up.set()
             left = [p for p in self._processes.values() if p.state is State.PENDING]
@@ -431,25 +431,19 @@ class Supervisor:
             unmet = ", ".join(f"{need.name} ({need.what})" for need in sorted(needs))
             self._fail(f"{left[0].name} comes after {unmet}, which cannot happen any more")
             return
-        if left or (not self._stopping and self._has_steps_left()):
+        running = [name for name, task in self._step_tasks.items() if not task.done()]
+        if left or (not self._stopping and keep_up(self.plan.steps, running, has_processes=bool(self._processes))):
             return
         if self._stopping or not self.clients.consoles:
             self.ended.set()
         else:
             self.note("all nodes have ended; restart one, or stop the graph")
 
-    def _has_steps_left(self) -> bool:
-        """Whether steps keep a graph without processes up: a delay, or any step if it never had a process."""
-        running = [name.removeprefix("step ") for name, task in self._step_tasks.items() if not task.done()]
-        kinds = {step.name: step.do for step in self.plan.steps}
-        return any(not self._processes or kinds[name] == "delay" for name in running)
-
     def _stop_next_layer(self) -> None:
         while self._layers and all(self._processes[name].state is State.ENDED for name in self._layers[0]):
             self._layers.pop(0)
         if self._layers:
-            for name in self._layers[0]:
-                process = self._processes[name]
+            for process in map(self._processes.__getitem__, self._layers[0]):
                 if not process.stop_requested:
                     process.stop_requested = True
                     self._apply(process, Event.STOP)

@@ -16,6 +16,7 @@ from graphflow.errors import TransportError
 from graphflow.graph.zenoh_address import port_fault
 from graphflow.system import user_id
 from graphflow.transport.config import close_session, config, open_session
+from graphflow.transport.forked import leave_port
 
 TOKENS = "@graphflow/rendezvous"
 """A rendezvous announces itself as `@graphflow/rendezvous/<zid>/<uid>/<pid>`."""
@@ -166,10 +167,13 @@ class Router:
 
 def host() -> Router | None:
     """Host the rendezvous: a router session on its port; None if the port is taken."""
+    endpoint = rendezvous_endpoint()
     try:
-        return Router(open_session(config("router", listen=rendezvous_endpoint())))
+        router = Router(open_session(config("router", listen=endpoint)))
     except TransportError:
         return None
+    leave_port(address(endpoint)[1])
+    return router
 
 
 def free_endpoint() -> str:

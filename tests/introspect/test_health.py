@@ -115,7 +115,9 @@ def test_promises_that_are_not_kept(count: int, is_told: bool) -> None:
 def test_a_flood_in_a_log() -> None:
     """Lines that were gathered count, too."""
     before, now = look(a={"log": {"lines": 5, "gathered": 0}}), look(a={"log": {"lines": 25, "gathered": 300}})
-    assert found(Seen(), before, now).faults == ["/a logs 160 lines per second: limit them with throttle=1.0, in rclpy throttle_duration_sec=1.0"]
+    assert found(Seen(), before, now).faults == [
+        "/a logs 160 lines per second: limit them with throttle=1.0, in rclpy throttle_duration_sec=1.0"
+    ]
     assert found(Seen(), now, now).faults == []
 
 

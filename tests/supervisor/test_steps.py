@@ -25,7 +25,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from graphflow.msgs.rcl_interfaces.srv import DescribeParameters, SetParametersAtomically
-from graphflow.supervisor.steps import StepRunner
+from graphflow.supervisor.steps import StepRunner, keep_up
 from graphflow.testing import Graph
 from tests.cases import slow
 from tests.conftest import Machine
@@ -304,3 +304,14 @@ async def test_a_delay(graph: Graph) -> None:
         assert not running.done()
         await graph.clock.advance(0.2)
         assert await running == "over"
+
+
+@pytest.mark.parametrize(
+    ("running", "has_processes", "keeps"), [("a", True, True), ("b", True, False), ("b", False, True)]
+)
+def test_steps_that_keep_a_graph_up(running: str, has_processes: bool, keeps: bool) -> None:
+    """A delay does after the last process; a call may wait for a node that has ended, unless there never was one."""
+    place = Place("g.yaml")
+    steps = [PlannedStep("a", "delay", "", place, place, place), PlannedStep("b", "call", "/b", place, place, place)]
+    assert keep_up(steps, [f"step {running}"], has_processes=has_processes) is keeps
+    assert not keep_up(steps, [], has_processes=has_processes)

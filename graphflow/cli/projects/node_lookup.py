@@ -180,9 +180,9 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
         *project_nodes(root)
     }
     if words and not words[0].startswith("-"):  # ROS's PKG EXE
-        file = Path(what, f"{words[0].removesuffix('.py')}.py")
-        if file.is_file():
-            return f"{what!r} is a folder, and no package: graphflow run {shlex.quote(str(file))}"
+        inside = Path(what, f"{words[0].removesuffix('.py')}.py")
+        if inside.is_file():
+            return f"{what!r} is a folder, and no package: graphflow run {shlex.quote(str(inside))}"
         near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
         meant = f"; did you mean {near!r}?" if near is not None else ""
         if substitute := no_package(what):

@@ -36,8 +36,6 @@ M = TypeVar("M", bound=Message)
 
 SOURCES_BOUND = 4096
 """Publishers tracked by a subscription."""
-
-
 _NO_INFO = (0, 0, bytes(16))
 """The fields of a missing attachment, or of one with another layout."""
 
@@ -77,19 +75,15 @@ class TopicSubscription(Endpoint, Generic[M]):
         """The wall-clock time of its opening."""
         self._expiry = Expiry(host, name)
         self._reading: SharedReading | None = None
-        self._callback = callback
-        self._takes_info = takes_info
-        self._ignore_local = ignore_local
+        self._callback, self._takes_info, self._ignore_local = callback, takes_info, ignore_local
         self._label = label or f"subscription {name}"
-        self._group = group
-        self._on_error = on_error
+        self._group, self._on_error = group, on_error
         self._codec = registry.codec(self.type_name)
         self._read: Callable[[Any], tuple[bytes, bytes | None]] = unreadable
         self.runner: Runner | None = None
         self._inbox: Inbox | None = None
-        self._taken = 0
-        self._turn_ends = 0.0
-        """When a reader has to give the loop a turn, in seconds on the monotonic clock."""
+        self._taken, self._turn_ends = 0, 0.0
+        """Messages that were read, and when their reader has to give the loop a turn, on the monotonic clock."""
         self._waiters: set[Future[None]] = set()
         self._sources: dict[bytes, Source] = {}
         self._leases = Leases(host, self._sources, self.matched, self._liveliness_changed)
