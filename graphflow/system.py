@@ -13,7 +13,11 @@ import re
 import sys
 from typing import Any
 
+from graphflow.errors import UsageFault
+
 PORTABLE_VARIABLE = "GRAPHFLOW_PORTABLE"
+LOOP_VARIABLE = "GRAPHFLOW_LOOP"
+"""Environment variable that selects `asyncio` or `uvloop`."""
 SITE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "rclpy", "site")
 """The folder of the packages that are imported under ROS's names."""
 ROS2 = os.path.join(os.path.dirname(SITE), "bin")
@@ -38,6 +42,23 @@ def collect_normally() -> None:
 def is_portable() -> bool:
     """Return whether only portable mechanisms are used."""
     return sys.platform != "linux" or os.environ.get(PORTABLE_VARIABLE, "") not in ("", "0")
+
+
+def chosen_loop() -> str:
+    """Return the kind of event loop that the environment selects; empty for the best one available.
+
+    Raises:
+        UsageFault: It is none, or is not installed.
+    """
+    chosen = os.environ.get(LOOP_VARIABLE, "")
+    if chosen not in ("", "asyncio", "uvloop"):
+        raise UsageFault(f"{LOOP_VARIABLE} is {chosen!r}; it may be 'asyncio' or 'uvloop'")
+    if chosen == "uvloop":
+        from importlib.util import find_spec  # hardly anybody chooses
+
+        if find_spec("uvloop") is None:
+            raise UsageFault(f"{LOOP_VARIABLE} is 'uvloop', which is not installed: pip install uvloop")
+    return chosen
 
 
 def user_id() -> int:

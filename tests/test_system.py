@@ -10,7 +10,17 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.system import ROS2, collect_normally, collect_rarely, detached, host_name, is_portable, offer_ros2
+from graphflow.errors import UsageFault
+from graphflow.system import (
+    ROS2,
+    chosen_loop,
+    collect_normally,
+    collect_rarely,
+    detached,
+    host_name,
+    is_portable,
+    offer_ros2,
+)
 from tests.until import until
 
 
@@ -90,3 +100,12 @@ def test_the_collector_runs_rarely_only_for_a_while() -> None:
     finally:
         collect_normally()
     assert gc.get_threshold() == usual
+
+
+def test_a_loop_that_there_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is refused with the choices; none is chosen by default."""
+    monkeypatch.delenv("GRAPHFLOW_LOOP", raising=False)
+    assert chosen_loop() == ""
+    monkeypatch.setenv("GRAPHFLOW_LOOP", "trio")
+    with pytest.raises(UsageFault, match="GRAPHFLOW_LOOP is 'trio'; it may be 'asyncio' or 'uvloop'"):
+        chosen_loop()

@@ -24,7 +24,7 @@ from graphflow.supervisor.processes import process_tree
 from graphflow.supervisor.processes.guardian import guard, leave_note
 from graphflow.supervisor.processes.lifeline import LET_GO, Lifeline
 from graphflow.supervisor.starts import ANNOUNCEMENT
-from graphflow.system import collect_normally, detached, is_portable, offer_ros2
+from graphflow.system import chosen_loop, collect_normally, detached, is_portable, offer_ros2
 
 if TYPE_CHECKING:
     from graphflow.graph.checks.check import Interfaces
@@ -102,7 +102,11 @@ def launch(
         only: Nodes to start; empty for all.
         debug: Nodes whose processes wait for a debugger.
         watch: Restart nodes when their source changes.
+
+    Raises:
+        UsageFault: The environment selects an event loop that there is not.
     """
+    chosen_loop()
     offer_ros2()
     ANNOUNCEMENT.begin(file)
     begin = _begin_portable if is_portable() else _begin_forked

@@ -3,21 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-import os
 from collections.abc import Callable, Coroutine
 from contextlib import closing, suppress
 from importlib.util import find_spec
 from typing import Any, TypeVar
 
-from graphflow.errors import UsageFault
-from graphflow.system import collect_normally, is_portable
+from graphflow.system import chosen_loop, collect_normally, is_portable
 from graphflow.transport.event_loop.daemon_threads import THREADS, DaemonExecutor
 from graphflow.transport.malloc import keep_freed_memory
 
 T = TypeVar("T")
-
-LOOP_VARIABLE = "GRAPHFLOW_LOOP"
-"""Environment variable that selects `asyncio` or `uvloop`."""
 
 
 def new_event_loop() -> asyncio.AbstractEventLoop:
@@ -28,11 +23,7 @@ def new_event_loop() -> asyncio.AbstractEventLoop:
 
 
 def _loop_of_the_best_kind() -> asyncio.AbstractEventLoop:
-    chosen = os.environ.get(LOOP_VARIABLE, "")
-    if chosen not in ("", "asyncio", "uvloop"):
-        raise UsageFault(f"{LOOP_VARIABLE} is {chosen!r}; it may be 'asyncio' or 'uvloop'")
-    if chosen == "uvloop" and find_spec("uvloop") is None:
-        raise UsageFault(f"{LOOP_VARIABLE} is 'uvloop', which is not installed: pip install uvloop")
+    chosen = chosen_loop()
     if chosen == "uvloop" or (not chosen and find_spec("uvloop") is not None):
         import uvloop
 

@@ -15,9 +15,9 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.mistakes import other_threads
 from graphflow.runtime.mistakes.other_threads import report_foreign_calls
-from graphflow.system import is_portable
+from graphflow.system import LOOP_VARIABLE, is_portable
 from graphflow.testing import Graph
-from graphflow.transport.event_loop.loop import LOOP_VARIABLE, new_event_loop
+from graphflow.transport.event_loop.loop import new_event_loop
 from tests.runtime.cast import Talker
 
 
