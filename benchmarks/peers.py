@@ -19,8 +19,8 @@ from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.qos import Qos
 from graphflow.system import LOOP_VARIABLE
-from graphflow.transport.event_loop.loop import new_event_loop
 from graphflow.transport.config import config, open_session
+from graphflow.transport.event_loop.loop import new_event_loop
 from graphflow.transport.inbox import Inbox
 from graphflow.transport.malloc import keep_freed_memory
 from graphflow.transport.rendezvous import establish, free_endpoint
