@@ -26,6 +26,7 @@ from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.mistakes.source.endless_waits import endless_waits, has_attribute
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.never_equal import never_equal
 from graphflow.runtime.mistakes.source.overridden import overridden
@@ -96,6 +97,9 @@ def _slips(cls: type) -> Iterator[str]:
             *uncancelled(parent, definition),
             *never_equal(cls, parent, definition, module),
         ]
+        for line, name, text in endless_waits(cls, definition, module):
+            if not any(has_attribute(other, name) for other in other_modules(file, name)):
+                found.append((line, text))
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
 
 

@@ -1,0 +1,119 @@
+"""Waits for what nothing ends: an Event that is never set, a Queue that nothing fills, a flag that stays as it is.
+
+At run time they look like waits for an event from outside. Where other code may reach the attribute, nothing is said.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from typing import NamedTuple
+
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.class_source import ClassSource, Unknown
+from graphflow.analysis.syntax import last_name, walk
+
+
+class _Kind(NamedTuple):
+    """A kind of object to wait for."""
+
+    waits: str
+    """The method that waits."""
+    ends: str
+    """The method that ends the wait."""
+    does: str
+    """What that does, as a verb."""
+    harmless: frozenset[str]
+    """Methods that do not end the wait."""
+
+
+_KINDS = {
+    "Event": _Kind("wait", "set()", "sets", frozenset({"wait", "is_set", "clear"})),
+    "Queue": _Kind("get", "put(...)", "puts anything into", frozenset({"get", "empty", "qsize", "full", "task_done"})),
+    "Lock": _Kind("acquire", "release()", "releases", frozenset({"acquire", "locked"})),
+}
+_MISSING = object()
+
+
+def endless_waits(cls: type, definition: ast.ClassDef, module: ast.Module) -> Iterator[tuple[int, str, str]]:
+    """Find the lines of such waits in a class; each comes with the attribute and a sentence.
+
+    Args:
+        cls: The class of the nodes, or a class that derives from it.
+        module: The file with the definition.
+    """
+    for line, name, text in _waits(cls, definition):
+        if not has_attribute(module, name, outside=definition):
+            yield line, name, text
+
+
+def has_attribute(module: ast.Module, name: str, outside: ast.ClassDef | None = None) -> bool:
+    """Whether a file mentions an attribute of a name, perhaps only outside of a class."""
+    lines = range(outside.lineno, (outside.end_lineno or 0) + 1) if outside is not None else ()
+    return any(
+        isinstance(node, ast.Attribute) and node.attr == name and node.lineno not in lines for node in ast.walk(module)
+    )
+
+
+def _waits(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str, str]]:
+    with suppress(Unknown):
+        source = ClassSource.of(cls)
+        for node, parents in walk(definition):
+            match node:
+                case ast.Call(func=ast.Attribute(value=ast.Attribute() as thing, attr=method), args=[], keywords=[]):
+                    if is_own(thing) and _is_unbounded(parents) and (text := _of_object(source, thing.attr, method)):
+                        yield node.lineno, thing.attr, f"{cls.__name__} waits for self.{thing.attr}, and {text}"
+                case ast.While(test=test) if not _may_leave(node):
+                    flag, staying = _polled(test)
+                    if flag and _stays(cls, source, flag, staying):
+                        text = f"nothing in {cls.__name__} sets it to anything but {staying[0]}"
+                        yield node.lineno, flag, f"this loop waits for self.{flag}, and {text}"
+
+
+def _is_unbounded(parents: Sequence[ast.AST]) -> bool:
+    """Whether a call is a wait without a limit: a statement or an awaited value, outside of any `timeout`."""
+    return isinstance(parents[-1], (ast.Await, ast.Expr)) and not any(isinstance(p, ast.AsyncWith) for p in parents)
+
+
+def _of_object(source: ClassSource, name: str, method: str) -> str:
+    """Return the reason why the wait for an object never ends; empty if that is not known."""
+    uses = source.uses(name)
+    made = {last_name(use.value.func) for use in uses if use.kind == "assigned" and isinstance(use.value, ast.Call)}
+    kind = _KINDS.get(made.pop()) if len(made) == 1 else None
+    if kind is None or method != kind.waits or source.foreign(name):
+        return ""
+    others = [use for use in uses if use.kind != "assigned"]
+    if any(use.kind != "called" or use.name not in kind.harmless for use in others):
+        return ""
+    return f"nothing {kind.does} it; call self.{name}.{kind.ends} in another handler"
+
+
+def _polled(test: ast.expr) -> tuple[str, tuple[object, ...]]:
+    """Return the attribute that a loop polls, and the values with which the loop goes on."""
+    match test:
+        case ast.Compare(left=ast.Attribute() as read, ops=[ast.Is()], comparators=[ast.Constant(value=None)]):
+            return (read.attr, (None,)) if is_own(read) else ("", ())
+        case ast.UnaryOp(op=ast.Not(), operand=ast.Attribute() as read):
+            return (read.attr, (False, None, 0)) if is_own(read) else ("", ())
+    return "", ()
+
+
+def _stays(cls: type, source: ClassSource, name: str, staying: tuple[object, ...]) -> bool:
+    """Whether an attribute is only ever set to some values."""
+    uses = source.uses(name)
+    if source.foreign(name) or any(use.kind not in ("assigned", "read") for use in uses):
+        return False
+    values = [_value(use.value) for use in uses if use.kind == "assigned"]
+    if not any(use.method == "__init__" for use in uses if use.kind == "assigned"):
+        values.append(inspect.getattr_static(cls, name, _MISSING))
+    return all(any(value is one for one in staying) for value in values)
+
+
+def _value(expression: ast.expr | None) -> object:
+    return expression.value if isinstance(expression, ast.Constant) else _MISSING
+
+
+def _may_leave(loop: ast.While) -> bool:
+    return any(isinstance(node, (ast.Break, ast.Return, ast.Raise)) for node in ast.walk(loop))
