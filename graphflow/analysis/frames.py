@@ -39,7 +39,7 @@ class Frame:
 
     @property
     def column(self) -> int | None:
-        """Where the current expression begins in its line, as a syntax tree counts; None if that is not known."""
+        """Start of the current expression in its line, as syntax trees count it; None if it is not known."""
         positions = islice(self.f_code.co_positions(), max(self.f_lasti, 0) // 2, None)
         return next((column for _, _, column, _ in positions), None) if self.f_lasti >= 0 else None
 

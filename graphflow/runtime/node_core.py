@@ -126,7 +126,8 @@ class NodeCore:
     @property
     def context(self) -> Context:
         if self._context is None:
-            raise ClosedError(f"node {self.full_name} is not running")
+            way = "use this from on_start, a handler or a task, which run when the node does"
+            raise ClosedError(f"node {self.full_name} is not running; {way}")
         return self._context
 
     @property

@@ -24,6 +24,7 @@ from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import log_level, setup_console
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 from graphflow.runtime.mistakes.errors.lost_errors import log_lost_errors
+from graphflow.runtime.mistakes.errors.python_errors import remark_on
 from graphflow.runtime.mistakes.other_threads import report_foreign_calls
 from graphflow.runtime.mistakes.unentered import Unentered
 from graphflow.runtime.mistakes.unread import unread
@@ -76,6 +77,8 @@ class _Running(Unentered[Context]):
         if idle and kind is None and not self._has_waited:
             text = "awaits nothing, so that no handler of %s runs; end it with await asyncio.Event().wait()"
             logger.warning(f"%s: this block {text}, or write graphflow.run(...)", self._place, ", ".join(idle))
+        if error is not None and (advice := remark_on(error)):
+            error.add_note(advice)
         return await self._block.__aexit__(kind, error, trace)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from graphflow.msgs import registry
@@ -78,9 +79,21 @@ def no_file(path: Path) -> str:
         return f"{shown(path)} is not a regular file"
     if hint := home_hint(path):
         return f"there is no file {shown(path)}{hint}"
+    if elsewhere := _from_root(path):
+        return f"there is no file {shown(path)}; a path begins at the file that has it: write {elsewhere}"
     beside = {file.stem: file.name for file in path.parent.glob("*.*")}
     found = beside.get(nearest(path.stem, beside) or "")
     return f"there is no file {shown(path)}" + (f"; did you mean {found!r}?" if found else "")
+
+
+def _from_root(path: Path) -> str:
+    """Return the right form of a missing path that was written relative to the project's root; empty for others."""
+    root = project_root(path)
+    parts = path.relative_to(root).parts if path.is_relative_to(root) else ()
+    for i in range(1, len(parts)):
+        if (found := root.joinpath(*parts[i:])).is_file():
+            return os.path.relpath(found, root.joinpath(*parts[:i]))
+    return ""
 
 
 def home_hint(path: Path) -> str:

@@ -170,6 +170,19 @@ async def test_an_error_of_the_block_leaves_it_as_it_is(graphflow_runner: asynci
     await context.close()
 
 
+async def test_advice_on_an_error_of_the_block(graphflow_runner: asyncio.Runner) -> None:
+    """A mistake in the use of a node's parts is explained as in its handlers."""
+    context, node = context_of(), Node("reader")
+    async with running(node, context=context):
+        pass
+    heard: Any = node.create_subscription(String, "chatter", None, 10)
+    with pytest.raises(TypeError) as caught:
+        async with running(Node("other"), context=context):
+            await heard
+    assert caught.value.__notes__ == ["iterate over the messages: async for message in heard"]
+    await context.close()
+
+
 async def test_a_nodes_failure_leaves_the_block(graphflow_runner: asyncio.Runner) -> None:
     """The block is cancelled where it waits, and the node's own error comes out of it."""
     clock = ManualClock()

@@ -96,6 +96,17 @@ def test_a_file_is_imported_from_its_project(folder: Path, monkeypatch: pytest.M
     assert module_of(folder / "a/nodes/n.py") == (folder / "a", "nodes.n")
 
 
+def test_a_path_from_the_root(tmp_path: Path) -> None:
+    """The right one begins at the file that has it; for any other missing file a similar name is suggested."""
+    for name in ("graphs/slow.yaml", "graphs/fast.yaml", "params/goal.yaml", "pyproject.toml"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).touch()
+    begins = "; a path begins at the file that has it: write "
+    assert no_file(tmp_path / "graphs/params/goal.yaml").endswith(f"{begins}../params/goal.yaml")
+    assert no_file(tmp_path / "graphs/graphs/slow.yaml").endswith(f"{begins}slow.yaml")
+    assert no_file(tmp_path / "graphs/slw.yaml").endswith("did you mean 'slow.yaml'?")
+
+
 def test_a_home_folder_that_is_not_expanded(tmp_path: Path) -> None:
     """The message has the substitution for it."""
     assert no_file(Path("~", "maps", "a.yaml")).endswith("; ~ is not expanded: write $(env HOME)/maps/a.yaml")

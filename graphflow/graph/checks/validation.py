@@ -149,8 +149,14 @@ def _misspelt(
     """Return whether a missing key is present with a typo, which is reported as an unknown key."""
     unknown = [str(p[-1]) for p, f in faults if f["type"] == "extra_forbidden" and p[:-1] == above]
     of_ros = key == "class" and not {"package", "executable"}.isdisjoint(unknown)
+    of_ros = of_ros or (key == "class" and any(_is_nested(f["input"]) for p, f in faults if p[:-1] == above))
     of_ros = of_ros or any(foreign_keys.correction(word, [key]) for word in unknown)
     return of_ros or any(nearest(word, _known_keys(model, (*above, word))) == key for word in unknown)
+
+
+def _is_nested(value: object) -> bool:
+    """Whether a value under an unknown key of a node is a node itself."""
+    return isinstance(value, dict) and not value.keys().isdisjoint(("class", "exec"))
 
 
 def _known_keys(model: type[BaseModel], path: source.Path) -> list[str]:
@@ -214,6 +220,8 @@ def _in_block(key: str, known: Collection[str], value: object) -> str:
     """Return the correction of a key that was meant as a loop or a group; empty if none is known."""
     if "for" in known and (loop := _LOOP.match(key)):
         return f"write for: {{var: {loop[1]}, in: {loop[2]}, nodes: ...}}"
+    if {"class", "exec"} <= {*known} and _is_nested(value):
+        return f"nodes are not nested: a namespace is part of the name, as in /NAMESPACE/{key}:"
     if "namespace" in known and isinstance(value, dict) and not value.keys().isdisjoint(BLOCKS):
         return f"a group is named by its namespace: group: {{namespace: {key}, nodes: ...}}"
     return ""

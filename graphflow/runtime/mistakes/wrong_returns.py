@@ -7,6 +7,7 @@ import inspect
 from collections.abc import Callable
 
 from graphflow.analysis.syntax import FunctionNode, first_line, last_name, syntax_of, walk
+from graphflow.analysis.user_code import short_place
 from graphflow.msgs.base import Message, name_of
 from graphflow.runtime.callables import code_of
 
@@ -18,8 +19,10 @@ def wrong_return(
 
     Args:
         wanted: The class of the response or result.
-        place: The handler's place, for errors without a line of their own.
+        place: The handler's place; by default that of its first line.
     """
+    code = code_of(callback)
+    place = place or (short_place(code.co_filename, code.co_firstlineno) if code is not None else "")
     where = f" ({place})" if place else ""
     if inspect.isawaitable(returned):
         return TypeError(_not_awaited(returned, wanted, callback, where))
@@ -27,9 +30,10 @@ def wrong_return(
         return TypeError(f"it returned the class {name_of(wanted)}: write {name_of(wanted)}(...){where}")
     if isinstance(returned, BaseException):
         calls = [call for call in _returned_calls(callback) if last_name(call.func) == type(returned).__name__]
-        code = code_of(callback)
         line = f" ({code.co_filename}:{calls[0].lineno})" if code is not None and len(calls) == 1 else where
         return TypeError(f"it returned an exception: write raise {returned!r}{line}")
+    if returned is None:
+        return TypeError(f"it returned None: end it with return {name_of(wanted)}(...){where}")
     return TypeError(f"it returned {returned!r}, not {name_of(wanted)}(...){where}")
 
 

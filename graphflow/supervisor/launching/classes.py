@@ -122,8 +122,19 @@ def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
     if near is None:
         parent, _, last = module.rpartition(".")
         beside = [m.name for m in iter_modules(getattr(sys.modules.get(parent), "__path__", []))]
-        hint = did_you_mean(last, beside) or _bundled(wanted) or f"; modules are looked for in {root}"
+        hint = did_you_mean(last, beside) or _above(module, Path(root)) or _bundled(wanted)
+        hint = hint or f"; modules are looked for in {root}"
     return f"cannot import {wanted}: there is no module {module!r}{hint}"
+
+
+def _above(module: str, root: Path) -> str:
+    """Suggest the folder above a project that has a missing module, which is its root if it has a pyproject.toml."""
+    top = module.partition(".")[0]
+    for folder in list(root.parents)[:2]:
+        if (folder / top).is_dir() or (folder / f"{top}.py").is_file():
+            made = folder / "pyproject.toml"
+            return f"; modules are looked for in {root}; that of {folder} is found once there is a file {made}"
+    return ""
 
 
 def _bundled(wanted: str) -> str:

@@ -49,7 +49,7 @@ async def test_an_empty_response_may_be_none(graph: Graph) -> None:
         ("raises", "ValueError", "^7 is too much$"),
         ("raises_plainly", "KeyError", "^'lost'$"),
         ("wrong_type", "TypeError", r"it returned std_srvs.*not .*AddTwoInts.*Response"),
-        ("returns_nothing", "TypeError", "it returned None, not AddTwoInts.Response"),
+        ("returns_nothing", "TypeError", "it returned None: end it with return AddTwoInts.Response(...)"),
         ("wrong_field", "EncodeError", "sum"),
         ("cancelled_inside", "CancelledError", ""),
     ],

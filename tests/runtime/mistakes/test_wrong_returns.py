@@ -108,6 +108,14 @@ def test_actions() -> None:
     )
 
 
+def test_a_result_that_is_forgotten() -> None:
+    """The place of the handler is told, with the statement that is missing."""
+    code = Front.count.__code__
+    text = str(wrong_return(None, Fibonacci.Result, Front().count))
+    place = f"test_wrong_returns.py:{code.co_firstlineno}"
+    assert text == f"it returned None: end it with return Fibonacci.Result(...) ({place})"
+
+
 class Refusing(Node):
     @action(Fibonacci, "fibonacci")
     async def count(self, goal: Any) -> Any:

@@ -15,7 +15,7 @@ from graphflow.errors import GraphflowError, Problem
 from graphflow.interface import Interface
 from graphflow.msgs import registry
 from graphflow.supervisor.launching import classes
-from graphflow.supervisor.launching.classes import add_root, import_class, interfaces
+from graphflow.supervisor.launching.classes import _no_module, add_root, import_class, interfaces
 from graphflow.supervisor.launching.probed import read_interfaces
 from tests.conftest import PROGRAMS
 
@@ -167,6 +167,14 @@ def test_a_file_that_is_run_apart_from_its_package(project: Path) -> None:
             import_class(f"{module}:Robot")
         way = f"; run it as a module of machines: graphflow run machines.{module}, in {project}"
         assert str(caught.value).endswith(way)
+
+
+def test_a_project_without_its_file(tmp_path: Path) -> None:
+    """The folder with the module is named, and the file that makes it the project's root."""
+    for name in ("course", "graphs"):
+        (tmp_path / name).mkdir()
+    text = _no_module("course.circle", "course.circle", "Circle", str(tmp_path / "graphs"))
+    assert text.endswith(f"that of {tmp_path} is found once there is a file {tmp_path / 'pyproject.toml'}")
 
 
 def test_a_package_that_another_hides(project: Path) -> None:

@@ -12,6 +12,7 @@ from types import FrameType
 
 from graphflow.analysis.user_code import is_users, parts_of, short_place
 from graphflow.msgs.base import Message, no_field
+from graphflow.names import nearest
 from graphflow.runtime.callables import code_of
 from graphflow.runtime.mistakes.errors import constructor_errors
 from graphflow.runtime.mistakes.rclpy_words import AttributeHints, hint_of, text_instead, translation
@@ -51,8 +52,15 @@ def better_text(error: AttributeError) -> str:
         return ""
     if text := text_instead(thing, name):
         return text
-    hint = translation(name) or hint_of(thing, name) or _setter(thing, name)
+    hint = translation(name) or hint_of(thing, name) or _setter(thing, name) or _near(thing, name)
     return f"{error}; {hint}" if hint else ""
+
+
+def _near(thing: object, name: str) -> str:
+    """Return the attribute that a misspelt one seems to mean; "" if there is none."""
+    known = [*getattr(thing, "__dict__", {}), *(word for cls in type(thing).__mro__ for word in vars(cls))]
+    near = nearest(name, [word for word in known if not word.startswith("_")], cutoff=0.75)
+    return f"did you mean {near!r}?" if near is not None else ""
 
 
 def _setter(thing: object, name: str) -> str:

@@ -47,8 +47,8 @@ REMARKS = (
     Remark(r"\b(method|function)\b.* '?await", _AWAITED, "call it: await {name}()"),
     Remark(
         r"\bTopicSubscription\b.* '?await",
-        _AWAITED,
-        "iterate over the messages: async for message in self.{name}",
+        r"await\s+(?P<read>[\w.]+)",
+        "iterate over the messages: async for message in {read}",
     ),
     Remark("'(async_generator|TopicSubscription)' object is not iterable", r"\bfor\b", "write async for"),
     Remark(
@@ -136,6 +136,11 @@ REMARKS = (
         "^'numpy.ndarray' object has no attribute '(append|extend|insert)'",
         "",
         "arrays cannot grow: fill a list, then assign it: message.data = numbers",
+    ),
+    Remark(
+        r"^ServedGoal\.feedback\(\) got an unexpected keyword argument '(?P<field>\w+)'",
+        r"(?P<goal>\w+)\.feedback\(",
+        "it takes a message: write {goal}.feedback(ACTION.Feedback({field}=...))",
     ),
     Remark("argument 'feedback_callback'", "", "read feedback with async for feedback in sent.feedback():"),
     Remark(

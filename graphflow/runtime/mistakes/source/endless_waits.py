@@ -24,7 +24,7 @@ class _Kind(NamedTuple):
     ends: str
     """The method that ends the wait."""
     does: str
-    """What that does, as a verb."""
+    """The verb for that."""
     harmless: frozenset[str]
     """Methods that do not end the wait."""
 

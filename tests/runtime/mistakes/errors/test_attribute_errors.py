@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import pytest
 
-from graphflow import Node
+from graphflow import Node, Param
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.sensor_msgs.msg import Image
 from graphflow.msgs.std_msgs.msg import String
@@ -111,6 +111,22 @@ def test_errors_of_others() -> None:
         before = str(error)
         explain(error)
         assert str(error) == before
+
+
+class Robot(Node):
+    """Has a parameter."""
+
+    goal_x = Param(1.0)
+
+
+def test_a_misspelt_attribute() -> None:
+    """The nearest one is suggested; a name unlike any other keeps Python's text."""
+    robot: Any = Robot()
+    for name, text in (("goalx", "has no attribute 'goalx'; did you mean 'goal_x'?"), ("colour", "attribute 'colour'")):
+        with pytest.raises(AttributeError) as caught:
+            getattr(robot, name)
+        explain(caught.value)
+        assert str(caught.value).endswith(text)
 
 
 def test_fields_that_are_set() -> None:

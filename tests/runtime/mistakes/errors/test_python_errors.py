@@ -82,6 +82,11 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         ("'method' object can't be awaited", "await self.tick", TICK),
         (EXPRESSION.format("TopicSubscription"), "message = await self.heard", HEARD),
         ("'TopicSubscription' object can't be awaited", "message = await self.heard", HEARD),
+        (
+            "ServedGoal.feedback() got an unexpected keyword argument 'elapsed'",
+            "goal.feedback(elapsed=1.0)",
+            "it takes a message: write goal.feedback(ACTION.Feedback(elapsed=...))",
+        ),
         ("'X' object does not support the context manager protocol", "with self.clock.timeout(1.0):", WITH),
         ("'HandlerGroup' object does not support the context manager protocol", "with self.motion:", GROUP),
         ("'HandlerGroup' object does not support the asynchronous context", "async with self.motion:", GROUP),
