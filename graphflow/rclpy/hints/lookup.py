@@ -7,12 +7,15 @@ attribute and by text; the others are derived from the message's fields, the cal
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType
 
 from graphflow.analysis.hiding import hidden
-from graphflow.analysis.user_code import parts_of
+from graphflow.analysis.mistakes.calls.called_early import results_passed
+from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.user_code import is_users, parts_of
 from graphflow.names import nearest
 from graphflow.rclpy.hints.calls import called_value, wrong_call
 from graphflow.rclpy.hints.fields import (
@@ -117,8 +120,28 @@ def _without_terminal(error: BaseException, _: list[FrameType]) -> str:
     return advise_on_input(error)
 
 
+def _called_early(error: BaseException, _: list[FrameType]) -> str:
+    """Explain an error in a callback that was called where it should have been passed."""
+    for part in parts_of(error.__traceback__):
+        file = part.tb_frame.f_code.co_filename
+        if is_users(file):
+            early = dict(results_passed(syntax_of(file).module, is_of_threads=False))
+            if found := early.get(part.tb_lineno):
+                return found
+    return ""
+
+
+def _no_argument(error: BaseException, frames: list[FrameType]) -> str:
+    if not isinstance(error, IndexError) or "sys.argv[" not in line_of(frames):
+        return ""
+    count = len(sys.argv) - 1
+    given = "no argument" if not count else "1 argument" if count == 1 else f"{count} arguments"
+    return f"the program was given {given}: write more behind its name, as in graphflow run PACKAGE PROGRAM 2 3"
+
+
 _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _hidden,
+    _called_early,
     swapped_arguments,
     missing_field,
     timer_info,
@@ -137,5 +160,6 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     message_as_value,
     _empty_slice,
     _without_terminal,
+    _no_argument,
 )
 """The rules, in order of precedence."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -244,3 +245,29 @@ def test_a_field_of_the_result_in_the_handle(name: str, sentence: str) -> None:
     """The handle has no result's fields; the way to the result is told, and the attribute that is almost meant."""
     handle = ClientGoalHandle.__new__(ClientGoalHandle)
     assert hint_of(lambda: getattr(handle, name)) == sentence
+
+
+def test_an_argument_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The number of those that the program was given is told; other lists are left alone."""
+    monkeypatch.setattr(sys, "argv", ["add_client", "2"])
+    assert hint_of(lambda: sys.argv[2]).startswith("the program was given 1 argument: write more behind its name")
+    assert hint_of(lambda: NUMBERS[5]) == ""
+
+
+class Early(Node):
+    """A node that calls its callback where it should pass it."""
+
+    def __init__(self) -> None:
+        super().__init__("early")
+        self.create_timer(0.5, self.tick())  # type: ignore[func-returns-value]
+        self.count = 0
+
+    def tick(self) -> None:
+        """Fail, since `count` comes later."""
+        self.count += 1
+
+
+def test_a_callback_that_is_called(node: Any) -> None:
+    """The line of the call is explained, not the missing attribute."""
+    text = "create_timer(..., self.tick()) calls tick at once, and passes on its result, None; write self.tick"
+    assert hint_of(Early) == text
