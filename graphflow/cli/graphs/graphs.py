@@ -292,10 +292,11 @@ def logs(
 ) -> int:
     """Show the logs of a graph's nodes, even after it has ended."""
     from graphflow.cli.graphs.loglines import Chosen
-    from graphflow.cli.graphs.streaming import LogReader, how_ended
+    from graphflow.cli.graphs.streaming import LogReader
     from graphflow.names import did_you_mean
     from graphflow.supervisor import rundir
     from graphflow.supervisor.control.choosing import choose
+    from graphflow.supervisor.last_end import how_ended
 
     try:
         folder = Path(choose(name).logs)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import select
 import signal
@@ -18,10 +17,10 @@ from graphflow.cli.graphs.loglines import Chosen, record
 from graphflow.cli.graphs.node_rows import NodeRow, node_rows
 from graphflow.domain import domain_id
 from graphflow.errors import SupervisorError
-from graphflow.reading import found_text
 from graphflow.supervisor.control.client import ControlClient
+from graphflow.supervisor.last_end import guardian_report
 from graphflow.supervisor.processes.process_tree import state_of
-from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, left_over
+from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun
 from graphflow.system import is_portable, terminal_name
 
 if TYPE_CHECKING:
@@ -35,8 +34,6 @@ _DOWN_LIMIT = 60.0
 """Seconds that may pass between the ends of two processes while a graph goes down."""
 _SILENCE_LIMIT = 2.0
 """Seconds that a supervisor may take to answer a request."""
-LOG_BOUND = 100_000_000
-"""Size limit in bytes of a supervisor's log that is searched for its end."""
 _SOCKET_LIMIT = 3.0
 """Seconds that a supervisor may take to notice that its socket was removed and to recreate it."""
 _ANSWERS = ("stopping", "exited", "end", "error")
@@ -312,38 +309,6 @@ def report_loss(run: GraphRun, end: Callable[[], str]) -> int:
     why = guardian_report(lost) or (end() if has_gone else silent(lost))
     output.error(f"{why}\n  its log: {Path(lost.logs) / SUPERVISOR_LOG}")
     return exits.FAILED
-
-
-def guardian_report(run: GraphRun) -> str:
-    """Return the guardian's report on the supervisor's end from the log; empty if there is none."""
-    begin = f"the supervisor, process {run.pid}, was ended"
-    for line in reversed(_supervisor_log(Path(run.logs))):
-        if line.startswith(begin):
-            return line
-    return ""
-
-
-def how_ended(logs: Path) -> str:
-    """Return the cause of a graph's end from its logs; empty if it ended by itself or none was written."""
-    for _, run in left_over():
-        if run.logs == str(logs):
-            return f"the supervisor, process {run.pid}, was killed{', and its guardian' if run.guardian else ''}"
-    for line in reversed(_supervisor_log(logs)):
-        if line.startswith("the supervisor, process "):
-            return line
-        entry = line.partition(" INFO ")[2]
-        if entry.startswith(('{"event": "error"', '{"event": "stopping"')):
-            with suppress(ValueError):  # a full disk has truncated it
-                event: Event = json.loads(entry)
-                return str(event["message"] if event["event"] == "error" else f"it was stopped ({event['reason']})")
-    return ""
-
-
-def _supervisor_log(logs: Path) -> list[str]:
-    try:
-        return found_text(logs / SUPERVISOR_LOG, "replace", LOG_BOUND).splitlines()
-    except OSError:
-        return []
 
 
 def _shown_place(place: str) -> str:

@@ -6,6 +6,7 @@ from graphflow.domain import domain_id, rendezvous_endpoint
 from graphflow.errors import SupervisorError
 from graphflow.names import did_you_mean
 from graphflow.supervisor import rundir
+from graphflow.supervisor.last_end import recent_death
 from graphflow.supervisor.rundir import GraphRun
 from graphflow.supervisor.starts import being_started
 
@@ -21,7 +22,9 @@ def running_here(*, everything: bool = False) -> list[GraphRun]:
     """
     runs = rundir.running()
     if not runs:
-        raise _none("no graph is running", "; start one with: graphflow up GRAPH.yaml")
+        death = recent_death()
+        why = f"; the latest, {death}" if death else ""
+        raise _none("no graph is running", f"{why}; start one with: graphflow up GRAPH.yaml")
     here = [run for run in runs if everything or run.is_here]
     if not here:
         listing = ", ".join(f"{r.graph} (domain {r.domain})" for r in runs)

@@ -6,16 +6,15 @@ import io
 import json
 import signal
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from graphflow.cli import exits, output
-from graphflow.cli.graphs.streaming import LogReader, _Stream, how_ended
+from graphflow.cli.graphs.streaming import LogReader, _Stream
 from graphflow.supervisor.control.client import ControlClient
-from graphflow.supervisor.rundir import SUPERVISOR_LOG, GraphRun, RunDirectory
+from graphflow.supervisor.rundir import GraphRun
 from tests.cases import slow
 from tests.cli.rows import node_row
 from tests.conftest import Machine
@@ -244,44 +243,3 @@ def test_what_is_odd_is_told_of_a_graph_that_does_not_come_up(machine: Machine, 
     assert "step ask FAILED" in up.text
     assert "lab.yaml:4:26: no node of this graph offers the service /aa/ask; did you mean '/a/ask'?" in up.text
     nothing_is_left(machine, [])
-
-
-LATE = '2026-11-26 16:13:53,512 INFO {"event": "error", "message": "not ready within 20 s: /a"}\n'
-STOPPED = '2026-11-26 16:13:54,000 INFO {"event": "stopping", "reason": "down, by pts/3"}\n'
-LOST = '2026-11-26 16:13:54,012 INFO {"event": "error", "message": "process 7, which starts the nodes, was ended"}\n'
-END = '2026-11-26 16:13:55,101 INFO {"event": "end", "exit_code": 1}\n'
-GUARDIAN = "the supervisor, process 5, was ended by signal SIGKILL; its nodes have ended\n"
-
-
-@pytest.mark.parametrize(
-    ("log", "told"),
-    [
-        ("", ""),
-        (END, ""),
-        (LATE + STOPPED + END, "it was stopped (down, by pts/3)"),
-        (STOPPED + LOST + END, "process 7, which starts the nodes, was ended"),
-        (STOPPED + GUARDIAN, GUARDIAN.strip()),
-        (STOPPED + LOST[:-20], "it was stopped (down, by pts/3)"),
-    ],
-)
-def test_how_a_graph_has_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, log: str, told: str) -> None:
-    """The last that its supervisor or its guardian has written of it; what a full disk has cut off is left out."""
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
-    (tmp_path / "run").mkdir(0o700)
-    append(tmp_path / SUPERVISOR_LOG, log)
-    assert how_ended(tmp_path) == told
-
-
-def test_how_a_graph_without_a_guardian_has_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without a guardian's report, the remaining run file shows how the graph ended."""
-    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "run"))
-    (tmp_path / "run").mkdir(0o700)
-    run = GraphRun("1", "lab", 7, 2**22 + 1, 1.0, 1.0, "", "", str(tmp_path), "", "")
-    directory = RunDirectory(7, "lab")
-    directory.claim()
-    directory.write(run)
-    assert how_ended(tmp_path) == f"the supervisor, process {run.pid}, was killed"
-    directory.write(replace(run, guardian=2**22 + 2, guardian_started=1.0))
-    assert how_ended(tmp_path) == f"the supervisor, process {run.pid}, was killed, and its guardian"
-    assert how_ended(tmp_path / "other") == ""
-    directory.release()

@@ -43,9 +43,9 @@ def _wrong_fields(method: FunctionNode, handler: Handler | None, file: str, spac
             case ast.Attribute(ctx=ast.Load(), attr=field) if type_ := _type_of(node.value, made):
                 if not (_has(type_, field) or any(_expects(parent, node.value) for parent in parents)):
                     yield f"{Place(file, node.lineno)}: {no_field(type_, field)}"
-            case ast.Assign(targets=[ast.Attribute(value=ast.Name(id=name), attr=field)], value=value) if name in made:
-                text = _misfit(made[name], field, value)
-                if text:
+            case ast.Assign(targets=[ast.Attribute(value=owner, attr=field)], value=value):
+                type_ = _type_of(owner, made)
+                if type_ is not None and (text := _misfit(type_, field, value)):
                     yield f"{Place(file, node.lineno)}: {text}"
 
 

@@ -47,6 +47,7 @@ ADD = '@service(AddTwoInts, "add")\ndef add(self, request, response):\n    '
         (POSE + "print(m.pos.position)", "10: PoseStamped has no field 'pos'; did you mean 'pose'?"),
         (POSE + "print(m.pose.positon.x)", "10: Pose has no field 'positon'; did you mean 'position'?"),
         (POSE + "m.pos = 1", "10: PoseStamped has no field 'pos'; did you mean 'pose'?"),
+        (POSE + "m.pose.position.x = 'fast'", "10: Point.x: expected float64, got 'fast'"),
         (
             POSE + "try:\n        if m.pos.x > 1:\n            print(1)\n    except Exception:\n        pass",
             "11: PoseStamped has no field 'pos'; did you mean 'pose'?",
