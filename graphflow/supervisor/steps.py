@@ -11,6 +11,7 @@ from graphflow.errors import ParameterError, ServiceUnavailable
 from graphflow.graph.plan import PlannedStep
 from graphflow.interface import type_id
 from graphflow.msgs import registry
+from graphflow.msgs.base import Message
 from graphflow.msgs.values import from_plain
 from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
@@ -20,6 +21,12 @@ from graphflow.wire.liveliness import Kind
 
 _DOUBLE, _DOUBLES = 3, 8
 """Values of rcl_interfaces/msg/ParameterType."""
+
+
+def remark_on(answer: object) -> str:
+    """Return a remark on a response that is empty, as many servers answer what they refuse; else an empty text."""
+    is_empty = isinstance(answer, Message) and bool(answer.SCHEMA.fields) and answer == type(answer)()
+    return ", an empty response: the server's log may say why" if is_empty else ""
 
 
 def keep_up(steps: Iterable[PlannedStep], running: Collection[str], *, has_processes: bool) -> bool:

@@ -29,7 +29,7 @@ from graphflow.supervisor.processes.process import Process
 from graphflow.supervisor.processes.starter import Starter
 from graphflow.supervisor.rundir import log_file
 from graphflow.supervisor.start_order import SLOW_START, needs_of_up, restarted_with, start_order, waits
-from graphflow.supervisor.steps import StepRunner, keep_up
+from graphflow.supervisor.steps import StepRunner, keep_up, remark_on
 
 if TYPE_CHECKING:
     from graphflow.supervisor.control.messages import Hello, NodeRow
@@ -301,7 +301,7 @@ class Supervisor:
         if planned.do == "log":
             self.clients.broadcast({"event": "said", "text": planned.target})
         else:
-            self._step_ended(planned, f"{planned.target} -> {answer}", ok=True)
+            self._step_ended(planned, f"{planned.target} -> {answer}{remark_on(answer)}", ok=True)
         self._meet(f"step {planned.name}", "done")
 
     def _step_ended(self, planned: PlannedStep, text: str, *, ok: bool) -> None:

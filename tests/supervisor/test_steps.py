@@ -25,7 +25,8 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from graphflow.msgs.rcl_interfaces.srv import DescribeParameters, SetParametersAtomically
-from graphflow.supervisor.steps import StepRunner, keep_up
+from graphflow.msgs.std_srvs.srv import Empty
+from graphflow.supervisor.steps import StepRunner, keep_up, remark_on
 from graphflow.testing import Graph
 from tests.cases import slow
 from tests.conftest import Machine
@@ -315,3 +316,10 @@ def test_steps_that_keep_a_graph_up(running: str, has_processes: bool, keeps: bo
     steps = [PlannedStep("a", "delay", "", place, place, place), PlannedStep("b", "call", "/b", place, place, place)]
     assert keep_up(steps, [f"step {running}"], has_processes=has_processes) is keeps
     assert not keep_up(steps, [], has_processes=has_processes)
+
+
+def test_an_empty_response() -> None:
+    """A server that refuses a request often answers so, and logs why; a response without fields is always empty."""
+    assert remark_on(AddTwoInts.Response()) == ", an empty response: the server's log may say why"
+    for answer in (AddTwoInts.Response(sum=1), Empty.Response(), "over"):
+        assert remark_on(answer) == ""
