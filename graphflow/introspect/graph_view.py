@@ -21,6 +21,7 @@ from graphflow.machines.domains import COMMANDS, elsewhere
 from graphflow.names import did_you_mean
 from graphflow.transport.base import Answer
 from graphflow.transport.client import Client, Hearing
+from graphflow.transport.config import reaches_out
 from graphflow.wire import attachment, net, process
 from graphflow.wire.keyexpr import DataKey
 from graphflow.wire.liveliness import NODES, Kind, watch_key
@@ -191,8 +192,9 @@ class View:
         if token is not None:
             return f"{token}: {token.command}" if token.command else str(token)
         zids = {e.zid for e in self.cache.owners(name)}
-        beyond = f", or beyond {self.profiles()[0]}" if self.profiles() else ""
-        return f"session {', '.join(sorted(zids))}, not a graphflow process{beyond}"
+        profiles = self.profiles()
+        beyond = f"beyond {profiles[0]}" if profiles else "on another machine" if reaches_out() else ""
+        return f"session {', '.join(sorted(zids))}, no graphflow process{f', or {beyond}' if beyond else ''}"
 
     def process_of(self, name: str) -> ProcessToken | None:
         """Return the process in which a node runs; None if it is not graphflow's."""
@@ -252,8 +254,13 @@ class View:
             return f"{name}: the server's definition of {type_name} differs from the one here{why}"
         if kept_back := self.kept_back(name, Kind.SERVICE):
             return kept_back
-        other = ", or the net profile of the other machine does not pass the call" if self.profiles() else ""
-        return f"{name}: the server went away before it answered{other}{self._stopped()}"
+        self.refresh()
+        here = self.processes()
+        still = [e for e in self.cache.endpoints(Kind.SERVICE, name) if e.type == type_name and e.zid not in here]
+        if still and (self.profiles() or reaches_out()):
+            why = "the net profile of its machine does not pass the call: add it to `allow` on both"
+            return f"{name} is announced, and does not answer: {why}"
+        return f"{name}: the server went away before it answered{self._stopped()}"
 
     def _stopped(self) -> str:
         """Describe stopped processes (SIGSTOP), which the router has forgotten by now, to append to an error."""

@@ -167,8 +167,12 @@ def test_a_call_that_fails(
     ("zid", "allow", "text"),
     [
         ("z9", ["/spawn"], f"{ADD} does not pass the net profile /lab.yaml, which allows /spawn; if its node is on"),
-        ("z9", ["/office/**"], "before it answered, or the net profile of the other machine does not pass the call"),
-        ("z1", ["/spawn"], "the server went away before it answered, or"),
+        (
+            "z9",
+            ["/office/**"],
+            "is announced, and does not answer: the net profile of its machine does not pass the call",
+        ),
+        ("z1", ["/spawn"], "the server went away before it answered"),
     ],
 )
 def test_a_net_profile_is_told(view: View, client: Client, zid: str, allow: list[str], text: str) -> None:
@@ -226,7 +230,7 @@ def test_processes_and_owners(view: View) -> None:
     assert set(view.processes()) == {"z1", "z2"}
     assert str(view.processes()["z2"]) == "process 12 on elsewhere"
     assert view.owner("/office/clerk").startswith("process ")
-    assert view.owner("/ros") == "session z9, not a graphflow process"
+    assert view.owner("/ros") == "session z9, no graphflow process"
 
 
 def parameters_of(node: Entity) -> Entity:
@@ -251,16 +255,14 @@ def test_names_that_are_taken(client: Client, answer: Answer | Exception) -> Non
     assert [key for key, _ in client.asked] == [parameters_of(node).data_key for node in (CLERK, ROS)]
     text = str(caught.value)
     assert text.startswith("already in domain 7: /office/clerk (process ")
-    assert (
-        "; /ros (session z9, not a graphflow process). Stop those nodes, call it otherwise, or choose another" in text
-    )
+    assert "; /ros (session z9, no graphflow process). Stop those nodes, call it otherwise, or choose another" in text
 
 
 def test_names_that_are_only_announced(client: Client, caplog: pytest.LogCaptureFixture) -> None:
     """A forged token does not keep a node from starting, whatever services it announces."""
     client.entities += [parameters_of(ROS)]
     refuse_taken_names(["/ros", "/office/clerk"], 7)
-    assert "/ros is announced in domain 7 by session z9, not a graphflow process, but does not answer" in caplog.text
+    assert "/ros is announced in domain 7 by session z9, no graphflow process, but does not answer" in caplog.text
     assert "/office/clerk is announced in domain 7 by process " in caplog.text
 
 

@@ -177,8 +177,9 @@ def _print(faults: Findings, notes: Findings, count: int) -> None:
         output.data(f"not graphflow nodes{beyond}, so their handlers are unknown: {', '.join(notes['silent'])}")
     output.lines([*notes["kept_back"], *notes["unreadable"], *notes["unseen"]])
     if not any(faults.values()) and not notes["late"]:
-        nodes = nothing_here("no nodes") if not count else f"{count} node{'s' if count != 1 else ''}"
-        output.data(f"{nodes}, {_verdict(notes)}" if count else nodes)
+        nodes = f"{count} node{'s' if count != 1 else ''}" if count else "no node of graphflow's"
+        is_empty = not count and not notes["silent"]
+        output.data(nothing_here("no nodes") if is_empty else f"{nodes}, {_verdict(notes)}")
 
 
 def _verdict(notes: Findings) -> str:

@@ -17,6 +17,7 @@ from graphflow.machines.matching import shared
 from graphflow.names import is_hidden
 from graphflow.times import to_ns
 from graphflow.transport.base import Closable
+from graphflow.transport.config import reaches_out
 from graphflow.wire import process
 from graphflow.wire.process import ProcessToken
 
@@ -92,7 +93,8 @@ class Twins:
     def _owner(self, zid: str) -> str:
         token = self._processes.get(zid)
         if token is None:
-            return f"session {zid}, not a graphflow process"
+            other = "no graphflow process, or on another machine" if reaches_out() else "no graphflow process"
+            return f"session {zid}, {other}"
         return f"{token} ({printable(token.command)})" if token.command else str(token)
 
     def _process(self, text: str, alive: bool) -> None:
