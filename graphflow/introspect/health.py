@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.numbers import REPLY_BOUND
-from graphflow.machines.cache import GraphCache
+from graphflow.machines.cache import ACTION_SEND_GOAL, GraphCache
 from graphflow.machines.matching import shared
 from graphflow.machines.near_topics import EVERYBODYS, is_misspelt
 from graphflow.names import is_hidden, nearest
@@ -263,7 +263,24 @@ def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:
                 near.append(f"{text}; did you mean {best}?")
             else:
                 far.append(f"{text}{_nearest(cache, name, here, there)}")
+    for text, is_near in _without_servers(cache):
+        (near if is_near else far).append(text)
     return near, far
+
+
+def _without_servers(cache: GraphCache) -> Iterator[tuple[str, bool]]:
+    """Yield a text for each action that has clients and no server, and whether its name is probably misspelt."""
+    ends = (cache.endpoints(kind) for kind in (Kind.CLIENT, Kind.SERVICE))
+    wanted, offered = ({e.name for e in each if e.name.endswith(ACTION_SEND_GOAL)} for each in ends)
+    actions = sorted(name.removesuffix(ACTION_SEND_GOAL) for name in offered)
+    for name in sorted(wanted - offered):
+        who = sorted({e.node_name for e in cache.endpoints(Kind.CLIENT, name) if not is_hidden(e.node_name)})
+        action = name.removesuffix(ACTION_SEND_GOAL)
+        best = next((other for other in actions if is_misspelt(action, other)), "")
+        if who and not is_hidden(action):
+            verb = "send goals" if len(who) > 1 else "sends goals"
+            hint = f"; did you mean {best}?" if best else ""
+            yield f"{' and '.join(who)} {verb} to {action}, which no node offers{hint}", bool(best)
 
 
 def _nearest(cache: GraphCache, name: str, here: Kind, there: Kind) -> str:

@@ -170,7 +170,7 @@ def test_a_call_that_fails(
         (
             "z9",
             ["/office/**"],
-            "is announced, and does not answer: the net profile of its machine does not pass the call",
+            "does not answer: the net profile of its machine does not pass the call",
         ),
         ("z1", ["/spawn"], "the server went away before it answered"),
     ],

@@ -164,15 +164,20 @@ def test_where_nobody_speaks() -> None:
         entity_token("/goto", kind=CLIENT, name="/spwan"),
         entity_token("/sim", kind=SERVICE, name="/spawn"),
         entity_token("/sim", kind=SUB, name="/sim/set"),
+        entity_token("/goto", kind=CLIENT, name="/rotat/_action/send_goal"),
+        entity_token("/sim", kind=SERVICE, name="/rotate/_action/send_goal"),
+        entity_token("/goto", kind=CLIENT, name="/cook/_action/send_goal"),
     )
     told = found(seen, [], [])
     assert told.faults == [
         "/goto subscribes to /turtle1/posee, which no node publishes; did you mean /turtle1/pose?",
         "/goto calls /spwan, which no node offers; did you mean /spawn?",
+        "/goto sends goals to /rotat, which no node offers; did you mean /rotate?",
     ]
     assert told.hints == [
         "/too and /two subscribe to /scan2, which no node publishes; available with that type: /scan1",
         "/sim subscribes to /turtle1/cmd_vel, which no node publishes; available with that type: /turtle1/pose",
+        "/goto sends goals to /cook, which no node offers",
     ]
 
 
