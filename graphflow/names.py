@@ -111,7 +111,7 @@ def _fault(name: str) -> str | None:
         return "it ends with /"
     for token in name[1:].split("/"):
         if not token:
-            return "it has // in it"
+            return f"it has // in it; did you mean {re.sub('//+', '/', name)!r}?"
         if not _TOKEN.match(token):
             return f"{token!r} may have only letters, digits and _, and may not begin with a digit{_legal(token)}"
     return None

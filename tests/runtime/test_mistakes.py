@@ -180,6 +180,7 @@ MISTAKES = {
         init('self.create_publisher("chatter", String, 10)'),
         init('self.create_subscription(String, "chatter", self.tick, 10)'),
         init('self.create_publisher(String, "my words", 10)'),
+        init('self.create_publisher(String, "//words", 10)'),
         init('self.declare_parameter("rate", None)'),
         init('self.get_parameter("rate")'),
         init('self.declare_parameter("rate", 1.0); self.rate'),
