@@ -336,11 +336,7 @@ class _Translation:
             return
         if needs_shell:
             words = ["sh", "-c", line]
-        before = item.entries.get("launch-prefix")
-        if before is not None and "$(" in str(before.value):  # it may become several words, or none
-            words = ["sh", "-c", f"exec {before.value} {shlex.join(words)}"]
-        else:
-            words = [*words_of(before), *words]
+        words = _prefixed(item.entries.get("launch-prefix"), words)
         if "cwd" in item.entries:
             words = ["env", "-C", str(item.entries["cwd"].value), *words]
         if words[:1] == ["ros2"]:  # graphflow has ros2's commands, and need not find it on the PATH
@@ -423,3 +419,10 @@ def _is_positive(item: Item) -> bool:
 
 def _scalar(item: Item) -> Scalar:
     return None if isinstance(item.value, (dict, list)) else item.value
+
+
+def _prefixed(prefix: Item | None, words: list[str]) -> list[str]:
+    """Return a command line behind its prefix."""
+    if prefix is not None and "$(" in str(prefix.value):  # it may become several words, or none
+        return ["sh", "-c", f"exec {prefix.value} {shlex.join(words)}"]
+    return [*words_of(prefix), *words]

@@ -285,8 +285,8 @@ def _flush() -> None:
 
 def is_exiting() -> bool:
     """Whether the main thread has ended, but for its wait for other threads."""
-    frames = stack_of(threading.main_thread().ident or 0)
-    return bool(frames) and frames[0].f_code is threading._shutdown.__code__  # type: ignore[attr-defined]
+    outermost = [frame.f_code for frame in stack_of(threading.main_thread().ident or 0)[:1]]
+    return [(code.co_filename, code.co_name) for code in outermost] == [(threading.__file__, "_shutdown")]
 
 
 def is_reading(thread: int) -> bool:

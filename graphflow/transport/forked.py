@@ -8,12 +8,13 @@ from __future__ import annotations
 import os
 import socket
 import stat
+import sys
 from contextlib import suppress
 
 
 def leave_port(port: int) -> None:
     """Let children that are forked from now on not keep the sockets of a TCP port of this machine."""
-    if not _ports and hasattr(os, "register_at_fork"):
+    if not _ports and sys.platform != "win32":
         os.register_at_fork(after_in_child=_leave)
     _ports.add(port)
 

@@ -141,16 +141,7 @@ async def _measure(
             kinds = list(dict.fromkeys((p.type, p.hash) for p in cache.endpoints(Kind.PUBLISHER, topic)))[:TYPES]
             if kinds:
                 waiting.discard(topic)
-            if len(kinds) > 1:
-                several = " and ".join(dict.fromkeys(type_name for type_name, _ in kinds))
-                output.talk(f"WARNING: {topic} is published with several types, and all are measured: {several}")
-            for type_name, type_hash in kinds:
-                try:
-                    listen(topic, type_name, type_hash)
-                except UsageFault as error:
-                    if len(kinds) == 1:
-                        raise
-                    output.talk(f"WARNING: {error}")
+                _listen_to_all(topic, kinds, listen)
         await clock.sleep(POLL)
         now_ns = clock.monotonic_ns()
         if now_ns >= next_ns:
@@ -162,6 +153,24 @@ async def _measure(
             has_warned = True
             await _warn_of_silence(node, topics, waiting)
     raise failed[0]
+
+
+def _listen_to_all(topic: str, kinds: list[tuple[str, str]], listen: Callable[[str, str, str], object]) -> None:
+    """Listen to a topic with each of its types and hashes.
+
+    Raises:
+        UsageFault: The only type cannot be measured; of several, the others are.
+    """
+    if len(kinds) > 1:
+        several = " and ".join(dict.fromkeys(type_name for type_name, _ in kinds))
+        output.talk(f"WARNING: {topic} is published with several types, and all are measured: {several}")
+    for type_name, type_hash in kinds:
+        try:
+            listen(topic, type_name, type_hash)
+        except UsageFault as error:
+            if len(kinds) == 1:
+                raise
+            output.talk(f"WARNING: {error}")
 
 
 async def _warn_of_silence(node: Node, topics: list[str], unpublished: Collection[str]) -> None:

@@ -26,7 +26,7 @@ from graphflow.supervisor.launching.classes import (
 )
 from graphflow.workspace.executables import SLIP, find, project_nodes, with_graphflow
 from graphflow.workspace.installed import installed, package_of, packages_with
-from graphflow.workspace.packages import find_workspace
+from graphflow.workspace.packages import Workspace, find_workspace
 from graphflow.workspace.project import demos_root, project_root
 from graphflow.workspace.unfound import owners, why_no_package
 
@@ -176,24 +176,30 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
     having = owners(what, workspace)
     if having:
         return f"{what!r} is an executable of {' and of '.join(having)}: graphflow run {having[0]} {what}"
+    if words and not words[0].startswith("-"):  # ROS's PKG EXE
+        return _no_such_package(what, words[0], workspace)
     known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")} | {
         *project_nodes(root)
     }
-    if words and not words[0].startswith("-"):  # ROS's PKG EXE
-        inside = Path(what, f"{words[0].removesuffix('.py')}.py")
-        if inside.is_file():
-            return f"{what!r} is a folder, and no package: graphflow run {shlex.quote(str(inside))}"
-        near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
-        meant = f"; did you mean {near!r}?" if near is not None else ""
-        if substitute := no_package(what):
-            return substitute
-        known_here = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
-        return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or known_here}"
     if "/" not in what and (file := _below(Path(), f"{what}.py")) is not None:
         return f"there is no node {what!r}; did you mean '{file}'?"
     known |= {*(package for package, _ in with_graphflow()), *packages, *installed()}
     known |= {name for one in installed().values() for name in one.nodes}
     return f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}"
+
+
+def _no_such_package(what: str, executable: str, workspace: Workspace) -> str:
+    """Return the error text for a package that there is not, with the folder or package that may be meant."""
+    inside = Path(what, f"{executable.removesuffix('.py')}.py")
+    if inside.is_file():
+        return f"{what!r} is a folder, and no package: graphflow run {shlex.quote(str(inside))}"
+    if substitute := no_package(what):
+        return substitute
+    packages = workspace.packages
+    near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
+    meant = f"; did you mean {near!r}?" if near is not None else ""
+    known_here = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
+    return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or known_here}"
 
 
 def _module_of(file: Path, root: Path) -> str:

@@ -58,8 +58,7 @@ def better_text(error: AttributeError) -> str:
 
 def _near(thing: object, name: str) -> str:
     """Return the attribute that a misspelt one seems to mean; "" if there is none."""
-    known = [*getattr(thing, "__dict__", {}), *(word for cls in type(thing).__mro__ for word in vars(cls))]
-    near = nearest(name, [word for word in known if not word.startswith("_")], cutoff=0.75)
+    near = nearest(name, [word for word in dir(thing) if not word.startswith("_")], cutoff=0.75)
     return f"did you mean {near!r}?" if near is not None else ""
 
 
