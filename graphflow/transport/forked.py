@@ -6,7 +6,6 @@ A child, such as a process pool's, inherits all descriptors and none of Zenoh's 
 from __future__ import annotations
 
 import os
-import socket
 import stat
 import sys
 from contextlib import suppress
@@ -38,5 +37,7 @@ def _leave() -> None:
 
 def _is_of_port(descriptor: int) -> bool:
     """Whether a socket listens on one of the ports, or was accepted there."""
+    import socket  # commands fork no children, and start faster without it
+
     with socket.socket(fileno=os.dup(descriptor)) as found:
         return found.family in (socket.AF_INET, socket.AF_INET6) and found.getsockname()[1] in _ports
