@@ -12,7 +12,7 @@ _RUNNERS = ("run", "running", "init", "spin")
 """Names of functions by which a program runs nodes."""
 _METHODS = (
     *("cancel", "reset", "destroy", "destroy_node", "shutdown", "try_shutdown"),
-    *("succeed", "abort", "canceled", "execute", "stop", "close"),
+    *("succeed", "abort", "canceled", "execute", "stop", "close", "spin", "spin_once"),
     *("set", "clear", "acquire", "release", "notify", "notify_all", "start", "join", "wait", "popleft", "task_done"),
 )
 """Methods of nodes, of their parts, and of events, locks, threads and queues that are called without arguments."""

@@ -187,6 +187,8 @@ class Package:
             return None
         if entry.module.endswith(".py"):
             return f"{head} modules are named without .py; write {entry.module.removesuffix('.py')}:{entry.function}"
+        if (above := file.parent.parent / file.name).is_file():
+            return f"{head} there is no {file}; {above} is one folder too high: move it into {file.parent}"
         near = self._nearest_module(entry.module)
         meant = "write that module, or name another one there"
         return f"{head} there is no {file}; " + (meant if near is None else f"did you mean {near}:{entry.function}?")

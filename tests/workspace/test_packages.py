@@ -378,6 +378,17 @@ def test_entry_points_that_start_nothing(tmp_path: Path, entry: str, told: str) 
     assert fault == (f"{folder}/setup.py:1: go is {entry}, and {told.format(folder)}" if told else None)
 
 
+def test_a_module_that_is_one_folder_too_high(tmp_path: Path) -> None:
+    """It is found, with the folder that it belongs in."""
+    setup = "setup(entry_points={'console_scripts': ['go = lamp.drive:main']})"
+    folder = package(tmp_path / "ws/src/lamp", "lamp", setup_dot_py=setup, lamp__node_dot_py="")
+    (folder / "drive.py").touch()
+    fault = find_workspace(tmp_path / "ws").packages["lamp"].fault_of("go")
+    told = f"there is no {folder}/lamp/drive.py; {folder}/drive.py is one folder too high: move it into {folder}/lamp"
+    assert fault is not None
+    assert fault.endswith(told)
+
+
 COPIED = "setup(entry_points={{'console_scripts': [\n{}\n]}})"
 
 

@@ -13,9 +13,12 @@ from typing import Final
 from graphflow.analysis.mistakes.calls.after_spin import after_spin
 from graphflow.analysis.mistakes.calls.called_early import results_passed, spins_called
 from graphflow.analysis.mistakes.calls.cancelled_futures import cancelled_futures
+from graphflow.analysis.mistakes.calls.inverted_waits import inverted_waits
+from graphflow.analysis.mistakes.calls.lifecycle_hooks import lifecycle_hooks
 from graphflow.analysis.mistakes.calls.misgiven import misgiven
 from graphflow.analysis.mistakes.calls.misplaced import replaced_methods
 from graphflow.analysis.mistakes.calls.mixed_interfaces import mixed_interfaces
+from graphflow.analysis.mistakes.calls.nested_spins import nested_spins
 from graphflow.analysis.mistakes.calls.single_spins import single_spins
 from graphflow.analysis.mistakes.checks import IN_CODE, IN_FILES, Found
 from graphflow.analysis.mistakes.values.message_values import message_values, subscribed
@@ -34,6 +37,9 @@ _IN_PROGRAMS: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     old_parameters,
     names_in_pairs,
     single_spins,
+    nested_spins,
+    inverted_waits,
+    lifecycle_hooks,
 )
 """Checks of programs for rclpy alone."""
 

@@ -280,6 +280,8 @@ def condition(call: RecordedCall) -> dict[str, str]:
 def no_equivalent(call: RecordedCall) -> str:
     """Return the problem of a class that a graph file cannot express, with the class that may be meant."""
     known = {name for names in NAMES.values() for name in names.split()}
+    if call.kind in NAMES["launch.event_handlers"].split():
+        return f"{call.kind} is an event handler, and no action: write RegisterEventHandler({call.kind}(...))"
     near = nearest(call.kind, known, cutoff=0.85) if call.kind not in known else None
     return f"{call.kind} has no equivalent in a graph file" + (f"; did you mean {near!r}?" if near else "")
 

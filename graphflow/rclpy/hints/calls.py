@@ -29,6 +29,8 @@ def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
     last = frames[-1] if frames else None
     if last is None or not isinstance(error, (TypeError, RuntimeError)):
         return ""
+    if re.match(r"Expected <class '.*>, got ", str(error)):
+        return ""  # the argument is wrong, and not the call
     if " must return its response, " in str(error):
         return "set the fields of response, and return response"
     if " must return TransitionCallbackReturn" in str(error):

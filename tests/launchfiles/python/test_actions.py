@@ -165,16 +165,21 @@ def test_what_a_process_says_is_done_at_its_end() -> None:
 
 def test_what_is_no_action(problems: list[Finding]) -> None:
     """It is a problem, with its line if there is one."""
-    RECORDING.written_at = 1
+    RECORDING.written_at, handler = 1, "OnProcessExit"
     assert actions(3) == []
     assert actions(dict) == []
     actions([said("TimerAction", period=1, actions=["x"])])
     actions([said("PushMatrix")])
+    actions([said("OnProcessExit", target_action=None)])
     assert problems == [
         {"line": 1, "message": "3 is not an action, such as Node(...)"},
         {"line": 1, "message": "the class dict is not an action, such as Node(...)"},
         {"line": 7, "message": "'x' is not an action, such as Node(...)"},
         {"line": 7, "message": "PushMatrix has no equivalent in a graph file"},
+        {
+            "line": 7,
+            "message": f"{handler} is an event handler, and no action: write RegisterEventHandler({handler}(...))",
+        },
     ]
 
 

@@ -30,6 +30,7 @@ def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]
     if spun is None:
         return
     line = body[spun].lineno
+    yield from _destroyed(body[:spun], body[spun])
     futures = {name for statement in body[:spun] for name in _assigned(statement)}
     for statement in body[spun + 1 :]:
         if read := next((name for name in _results(statement) if name in futures), None):
@@ -42,6 +43,17 @@ def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]
                 if is_sent and not _IS_LAST.match(name):
                     text = f"{ast.unparse(function)} runs only after Ctrl-C, since spin (line {line})"
                     yield statement.lineno, f"{text} returns then; call it before spin, or in a callback of a timer"
+
+
+def _destroyed(before: list[ast.stmt], spin: ast.stmt) -> Iterator[tuple[int, str]]:
+    """Yield the line that destroys the node which a spin is given."""
+    spun = {node.id for node in ast.walk(spin) if isinstance(node, ast.Name)}
+    for statement in before:
+        match statement:
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=ast.Name(id=node), attr="destroy_node"))):
+                if node in spun:
+                    text = f"{node}.destroy_node() ends the node before spin (line {spin.lineno}), which calls nothing"
+                    yield statement.lineno, f"{text}; destroy it after spin"
 
 
 def _assigned(statement: ast.stmt) -> Iterator[str]:

@@ -29,15 +29,15 @@ _UNITS: dict[str, Unit] = {"deg": "degrees", "rad": "radians"}
 @cache
 def mixed_angles(module: ast.Module) -> tuple[tuple[int, str], ...]:
     """Return the lines that add, subtract or compare such angles, or take a sine of degrees; each with a correction."""
-    return tuple(_mixed(module, pose_names(module))) if _has_degrees(module) else ()
+    return tuple(_mixed(module, pose_names(module))) if _has_conversions(module) else ()
 
 
-def _has_degrees(module: ast.Module) -> bool:
-    """Whether a file mentions them at all; most do not."""
+def _has_conversions(module: ast.Module) -> bool:
+    """Whether a file mentions degrees or conversions at all; most do not."""
     for node in ast.walk(module):
         match node:
             case ast.Attribute(attr=name) | ast.Name(id=name) | ast.Constant(value=str(name)):
-                if name in _DEGREES or _UNITS.get(name) == "degrees":
+                if name in (*_DEGREES, *_RADIANS) or _UNITS.get(name) == "degrees":
                     return True
     return False
 
@@ -56,6 +56,11 @@ def _mixed(module: ast.Module, names: PoseNames) -> Iterator[tuple[int, str]]:
                 if _unit(angle, names, parents) == "degrees":
                     name = names.called(function)
                     yield node.lineno, f"{ast.unparse(angle)} is in degrees, and {name} takes radians"
+            case ast.Call(func=function, args=[angle]) if names.called(function) in (*_DEGREES, *_RADIANS):
+                wanted = "degrees" if names.called(function) in _DEGREES else "radians"
+                if _unit(angle, names, parents) == wanted:
+                    text = f"{ast.unparse(angle)} is in {wanted} already"
+                    yield node.lineno, f"{text}: leave out {ast.unparse(function)}"
         line = getattr(node, "lineno", 0)
         for left, right in pairs:
             units = {_unit(side, names, parents): side for side in (left, right)}

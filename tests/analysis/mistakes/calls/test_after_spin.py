@@ -57,3 +57,12 @@ def test_a_future_of_the_end() -> None:
     """One that is made after spin is awaited there in another way."""
     program = _PROGRAM.format("future = node.end()\n    print(future.result())")
     assert list(after_spin(ast.parse(program))) == []
+
+
+def test_a_node_that_is_destroyed_before() -> None:
+    """Its line is told; another node's end is not."""
+    program = _PROGRAM.replace("    rclpy.spin", "    {}.destroy_node()\n    rclpy.spin").format("node", "pass")
+    [(line, text)] = after_spin(ast.parse(program))
+    assert line == 14
+    assert text.startswith("node.destroy_node() ends the node before spin (line 15)")
+    assert not list(after_spin(ast.parse(program.replace("node.destroy_node", "other.destroy_node"))))

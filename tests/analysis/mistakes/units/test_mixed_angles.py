@@ -101,3 +101,17 @@ def test_a_callback_of_rclpy() -> None:
     made = "self.create_subscription(Pose, 'pose', self.heard, 10)\n        error = angle - self.pose.theta"
     assert mixed_angles(ast.parse(source.format("error = angle - self.pose.theta"))) == ()
     assert len(mixed_angles(ast.parse(source.format(made)))) == 1
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("x = math.radians(pose.theta)", "pose.theta is in radians already: leave out math.radians"),
+        ("x = math.degrees(angle)", "angle is in degrees already: leave out math.degrees"),
+        ("x = math.radians(angle)", ""),
+        ("x = math.radians(given)", ""),
+    ],
+)
+def test_angles_that_are_converted_twice(line: str, text: str) -> None:
+    """Only where the unit is known."""
+    assert [found for _, found in mixed_angles(ast.parse(TURTLE.format(line)))] == ([text] if text else [])

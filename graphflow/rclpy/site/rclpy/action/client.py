@@ -197,9 +197,15 @@ class ActionClient(Waitable):
             TypeError: Not a goal of the action's type.
         """
         if not isinstance(goal, self._action_type.Goal):
-            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
+            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}: {self._graphflow_way()}")
         handle = self._graphflow.block_on(self.send_goal_async(goal, **kwargs))
         return handle.get_result() if handle is not None and handle.accepted else None
+
+    def _graphflow_way(self) -> str:
+        """Return how a goal is made."""
+        fields = [*self._action_type.Goal.get_fields_and_field_types()]
+        given = f"{fields[0]}=..." if fields else ""
+        return f"make one, as in {self._action_type.__name__}.Goal({given})"
 
     def send_goal_async(
         self, goal: object, feedback_callback: Callable[..., object] | None = None, goal_uuid: UUID | None = None
@@ -216,7 +222,7 @@ class ActionClient(Waitable):
         from unique_identifier_msgs import msg
 
         if not isinstance(goal, self._action_type.Goal):
-            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
+            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}: {self._graphflow_way()}")
         carrier = self._action_type.Impl.SendGoalService
         goal_id = msg.UUID(uuid=list(uuid.uuid4().bytes)) if goal_uuid is None else goal_uuid
         key = bytes(goal_id.uuid)

@@ -357,6 +357,9 @@ class ActionServer(Waitable):
                 response.goals_canceling.append(msg.GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp))
         if wanted and not response.goals_canceling:
             response.return_code = int(CancelCode.REJECTED)
+            if self._cancel_callback is default_cancel_callback:
+                way = "give the ActionServer a cancel_callback that returns CancelResponse.ACCEPT"
+                self._logger.warning(f"a request to cancel is refused, as by default: {way}")
         with sending():
             self._graphflow.cancels.answer(asked, classes.encode(response))
 

@@ -113,7 +113,7 @@ def test_what_is_no_goal_is_refused(node: Node) -> None:
     """And a client that was destroyed is gone."""
     client = ActionClient(node, Fibonacci, "fib")
     for wrong in (lambda: client.send_goal("x"), lambda: client.send_goal_async("x")):
-        with pytest.raises(TypeError):
+        with pytest.raises(TypeError, match=r"make one, as in Fibonacci\.Goal\(order=\.\.\.\)"):
             wrong()
     client.destroy()
     client.destroy()

@@ -99,6 +99,18 @@ def test_a_goal_is_cancelled_if_the_server_agrees(node: Node, spin: Spinner) -> 
     assert future.result().return_code == CancelGoal.Response.ERROR_GOAL_TERMINATED
 
 
+def test_a_server_without_a_cancel_callback(node: Node, spin: Spinner, capfd: pytest.CaptureFixture[str]) -> None:
+    """It refuses, as in ROS 2; the warning has the callback that would accept."""
+    ActionServer(node, Fibonacci, "fib", print, handle_accepted_callback=lambda goal: None)
+    future = send(node, spin).cancel_goal_async()
+    spin(future.done)
+    assert future.result().return_code == CancelGoal.Response.ERROR_REJECTED
+    assert (
+        "a request to cancel is refused, as by default: give the ActionServer a cancel_callback"
+        in capfd.readouterr().err
+    )
+
+
 def test_cancel_requests_mean_one_goal_some_or_all(node: Node, spin: Spinner) -> None:
     """By id, by time, or by neither."""
     kept: list[ServerGoalHandle] = []

@@ -1,0 +1,28 @@
+"""Callbacks that spin their own node, `rclpy.spin_once(self)`: the node already spins, and waits for the callback."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from graphflow.analysis.syntax import FunctionNode, last_name
+
+_TAKERS = {"create_timer": 1, "create_subscription": 2, "create_service": 2}
+"""Methods that take a callback, with its position among their arguments."""
+
+
+def nested_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
+    """Find the lines of callbacks that spin `self`; each comes with what happens."""
+    calls = [node for node in ast.walk(module) if isinstance(node, ast.Call)]
+    given = [(call, _TAKERS[last_name(call.func)]) for call in calls if last_name(call.func) in _TAKERS]
+    callbacks = {last_name(call.args[at]) for call, at in given if len(call.args) > at}
+    for method in ast.walk(module):
+        if not isinstance(method, FunctionNode) or method.name not in callbacks:
+            continue
+        for node in ast.walk(method):
+            match node:
+                case ast.Call(func=ast.Attribute(value=ast.Name("rclpy"), attr=spin), args=[ast.Name("self"), *_]):
+                    if spin in ("spin", "spin_once"):
+                        text = f"rclpy.{spin}(self) in the callback {method.name} waits for callbacks of this node"
+                        way = f"which wait for {method.name}: leave it out, since main spins the node"
+                        yield node.lineno, f"{text}, {way}"
