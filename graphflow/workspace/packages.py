@@ -187,11 +187,10 @@ class Package:
             return None
         if entry.module.endswith(".py"):
             return f"{head} modules are named without .py; write {entry.module.removesuffix('.py')}:{entry.function}"
-        if (above := file.parent.parent / file.name).is_file():
-            return f"{head} there is no {file}; {above} is one folder too high: move it into {file.parent}"
-        near = self._nearest_module(entry.module)
-        meant = "write that module, or name another one there"
-        return f"{head} there is no {file}; " + (meant if near is None else f"did you mean {near}:{entry.function}?")
+        near, above = self._nearest_module(entry.module), file.parent.parent / file.name
+        meant = f"did you mean {near}:{entry.function}?" if near else "write that module, or name another one there"
+        too_high = f"{above} is one folder too high: move it into {file.parent}" if above.is_file() else ""
+        return f"{head} there is no {file}; {too_high or meant}"
 
     def copy_fault(self, executable: str) -> str | None:
         """Return the fault of an entry that is a copy of another but for its name, which is that of another module."""
@@ -199,8 +198,7 @@ class Package:
         first = next((name for name, other in self.entry_points.items() if other == entry), executable)
         if entry is None or first == executable:
             return None
-        package = entry.module.rpartition(".")[0]
-        meant = EntryPoint(f"{package}.{executable}".lstrip("."), entry.function)
+        meant = EntryPoint(f"{entry.module.rpartition('.')[0]}.{executable}".lstrip("."), entry.function)
         file = self.file_of(meant)
         is_started = any(other.module == meant.module for other in self.entry_points.values())
         if is_started or not file.is_file() or not starts_nodes(_text(file), entry.function) or self._imports(file):
