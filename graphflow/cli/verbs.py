@@ -55,6 +55,8 @@ class Verb(click.Command):
         left = super().parse_args(ctx, list(args))
         if left and (flag := flag_before(self, left[0], args)):
             ctx.fail(f"{flag} takes no value; leave out {left[0]}")
+        if left and (operator := next((word for word in args if word in _OF_SHELLS), "")):
+            ctx.fail(f"{operator} is for a shell, and no shell reads this line: run it in a terminal")
         if left and path in OF_ONE:
             one = "interface show" if path.startswith("interface") and "/" in left[0] else OF_ONE[path]
             ctx.fail(f"{path} takes no name; for one: graphflow {one} {left[0]}")
@@ -67,6 +69,8 @@ class Verb(click.Command):
         return f"Got unexpected extra argument{'s' if len(left) > 1 else ''} ({' '.join(left)})"
 
 
+_OF_SHELLS = ("|", ">", ">>", "<", "&", "&&", "||", ";", "2>&1")
+"""Operators that no shell leaves in the words of a command; the console's prompt passes them on."""
 _A_VALUE = re.compile(r"[-+]?[\d.]+\w{0,2}|true|false|yes|no|on|off", re.IGNORECASE)
 """A word that looks like an option's value rather than a name."""
 

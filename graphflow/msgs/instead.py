@@ -107,9 +107,12 @@ def named(cls: type[base.Message], data: object) -> str | None:
     """Assign values to the fields that they are probably meant for, in order; None if their number differs.
 
     Args:
-        data: A value, a list of values, or a text with a part for each field.
+        data: A value, a list of values, or a text with a part for each field, as in `1 2` or `x=1 y=2`.
     """
     fields = cls.SCHEMA.fields
+    pairs = [part.partition("=") for part in data.split()] if isinstance(data, str) else []
+    if pairs and all(sign and name in {field.name for field in fields} for name, sign, _ in pairs):
+        return f"{{{', '.join(f'{name}: {_flow(value)}' for name, _, value in pairs)}}}"
     values = data if isinstance(data, list) else data.split() if isinstance(data, str) and len(fields) > 1 else [data]
     if len(values) != len(fields) or not fields:
         return None

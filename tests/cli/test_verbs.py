@@ -27,6 +27,8 @@ def test_what_ros2_has_and_graphflow_does_without(words: str) -> None:
         ("frobnicate", "no such command 'frobnicate'; graphflow --help lists all"),
         ("rostopic list", "no such command 'rostopic'; did you mean: graphflow topic list"),
         ("topic list --json true", "--json takes no value; leave out true"),
+        ("topic list | grep pose", "| is for a shell, and no shell reads this line: run it in a terminal"),
+        ("topic echo /pose --once > out.txt", "> is for a shell, and no shell reads this line: run it in a terminal"),
         ("service x", "no such command 'x'; there is call, echo, find, info, list, type"),
     ],
 )

@@ -104,6 +104,7 @@ def test_lists_and_messages_that_hold_others(field: str, value: Any, text: str) 
             [[1.0, 0, 0], [0, 0, 2]],
             "{linear: {x: 1.0, y: 0, z: 0}, angular: {x: 0, y: 0, z: 2}}",
         ),
+        ("geometry_msgs/msg/Point", "y=1.5 x=-2", "{y: 1.5, x: -2}"),
         ("geometry_msgs/msg/Twist", [1.0, 2.0], None),
         ("geometry_msgs/msg/Point", "1 2", None),
         ("std_msgs/msg/Empty", "x", None),

@@ -204,6 +204,10 @@ def _meant(types: list[str], words: Sequence[str]) -> str:
         return ""
     with suppress(GraphflowError):
         request = registry.interface_class(registry.service_schema(types[0]).request.name)
+        if words[0].rpartition("/")[2] == types[0].rpartition("/")[2]:  # the type, written in short
+            words = words[1:]
+        if not words:
+            return ""
         values = message_values(words)
         text = " ".join(words) if isinstance(values, dict) else named(request, values)
         return "" if text is None else shlex.quote(text)

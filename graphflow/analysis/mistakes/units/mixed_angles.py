@@ -44,31 +44,37 @@ def _has_conversions(module: ast.Module) -> bool:
 
 def _mixed(module: ast.Module, names: PoseNames) -> Iterator[tuple[int, str]]:
     for node, parents in walk(module):
-        pairs: list[tuple[ast.expr, ast.expr]] = []
-        match node:
-            case ast.BinOp(left=left, op=ast.Add() | ast.Sub(), right=right):
-                pairs = [(left, right)]
-            case ast.AugAssign(target=target, op=ast.Add() | ast.Sub(), value=value):
-                pairs = [(target, value)]
-            case ast.Compare(left=left, comparators=others):
-                pairs = [*zip([left, *others], others, strict=False)]
-            case ast.Call(func=function, args=[angle]) if names.called(function) in _TAKING_RADIANS:
-                if _unit(angle, names, parents) == "degrees":
-                    name = names.called(function)
-                    yield node.lineno, f"{ast.unparse(angle)} is in degrees, and {name} takes radians"
-            case ast.Call(func=function, args=[angle]) if names.called(function) in (*_DEGREES, *_RADIANS):
-                wanted = "degrees" if names.called(function) in _DEGREES else "radians"
-                if _unit(angle, names, parents) == wanted:
-                    text = f"{ast.unparse(angle)} is in {wanted} already"
-                    yield node.lineno, f"{text}: leave out {ast.unparse(function)}"
-        line = getattr(node, "lineno", 0)
-        for left, right in pairs:
+        if isinstance(node, ast.Call) and len(node.args) == 1:
+            yield from _misconverted(node, names, parents)
+        for left, right in _pairs(node):
             units = {_unit(side, names, parents): side for side in (left, right)}
             if units.keys() == {"degrees", "radians"}:
                 degrees, radians = (ast.unparse(units[unit]) for unit in ("degrees", "radians"))
                 is_plain = isinstance(units["degrees"], (ast.Name, ast.Attribute))
                 way = f"write math.radians({degrees})" if is_plain else "write both in radians"
-                yield line, f"{degrees} is in degrees, and {radians} in radians; {way}"
+                yield left.lineno, f"{degrees} is in degrees, and {radians} in radians; {way}"
+
+
+def _pairs(node: ast.AST) -> list[tuple[ast.expr, ast.expr]]:
+    """Return the expressions whose units have to agree."""
+    match node:
+        case ast.BinOp(left=left, op=ast.Add() | ast.Sub(), right=right):
+            return [(left, right)]
+        case ast.AugAssign(target=target, op=ast.Add() | ast.Sub(), value=value):
+            return [(target, value)]
+        case ast.Compare(left=left, comparators=others):
+            return [*zip([left, *others], others, strict=False)]
+    return []
+
+
+def _misconverted(call: ast.Call, names: PoseNames, parents: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
+    """Find a sine of degrees, and an angle that is converted to the unit that it has."""
+    name, angle = names.called(call.func), call.args[0]
+    if name in _TAKING_RADIANS and _unit(angle, names, parents) == "degrees":
+        yield call.lineno, f"{ast.unparse(angle)} is in degrees, and {name} takes radians"
+    wanted = "degrees" if name in _DEGREES else "radians"
+    if name in (*_DEGREES, *_RADIANS) and _unit(angle, names, parents) == wanted:
+        yield call.lineno, f"{ast.unparse(angle)} is in {wanted} already: leave out {ast.unparse(call.func)}"
 
 
 def _unit(expression: ast.expr, names: PoseNames, parents: Sequence[ast.AST], depth: int = 0) -> Unit:

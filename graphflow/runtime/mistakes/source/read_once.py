@@ -17,8 +17,8 @@ from graphflow.errors import Place
 from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.mistakes.source.project_words import other_modules
 from graphflow.runtime.mistakes.source.shadowing import definition_of
-from graphflow.runtime.mistakes.source.slips import other_modules
 
 _FIRST = ("__init__", "on_start")
 """Methods that run once, before any handler."""

@@ -19,8 +19,8 @@ from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, syntax_of, walk
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import Place
+from graphflow.runtime.mistakes.source.project_words import other_modules
 from graphflow.runtime.mistakes.source.shadowing import definition_of
-from graphflow.runtime.mistakes.source.slips import other_modules
 
 logger = logging.getLogger("graphflow")
 

@@ -13,8 +13,8 @@ from graphflow.analysis.syntax import FunctionNode, syntax_of
 from graphflow.analysis.user_code import is_users_module, short_place
 from graphflow.errors import Place
 from graphflow.runtime.declarations import declared
+from graphflow.runtime.mistakes.source.project_words import other_modules, words_in
 from graphflow.runtime.mistakes.source.shadowing import definition_of
-from graphflow.runtime.mistakes.source.slips import other_modules, words_in
 
 _BY_NAME = {"getattr", "vars", "__dict__", "exec", "eval", "attrgetter", "methodcaller"}
 """Names in modules that may use an attribute in another way."""

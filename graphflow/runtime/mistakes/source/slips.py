@@ -12,29 +12,27 @@ import logging
 import re
 import sys
 from collections.abc import Collection, Iterator
-from contextlib import suppress
 from functools import cache
-from pathlib import Path
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.mistakes import native_source
-from graphflow.analysis.syntax import FunctionNode, last_name, syntax_of, walk
-from graphflow.analysis.user_code import is_installed, is_users_module
+from graphflow.analysis.syntax import FunctionNode, syntax_of
+from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import Place
 from graphflow.names import nearest
-from graphflow.reading import found_text
-from graphflow.runtime.callables import file_of
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
 from graphflow.runtime.mistakes.source.endless_waits import endless_waits, has_attribute
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.never_equal import never_equal
 from graphflow.runtime.mistakes.source.overridden import overridden
+from graphflow.runtime.mistakes.source.project_words import other_modules, words_in
 from graphflow.runtime.mistakes.source.shadowing import definition_of
+from graphflow.runtime.mistakes.source.stray_attributes import stray_attributes
 from graphflow.runtime.mistakes.source.uncancelled import uncancelled
 from graphflow.runtime.mistakes.source.unrepeated import unrepeated
 from graphflow.runtime.mistakes.source.without_super import without_super
-from graphflow.runtime.mistakes.source.wrong_fields import message_of, resolved, wrong_fields
+from graphflow.runtime.mistakes.source.wrong_fields import flags_of, message_of, resolved, whole_messages, wrong_fields
 from graphflow.runtime.mistakes.source.wrong_units import wrong_units
 
 logger = logging.getLogger("graphflow")
@@ -79,13 +77,15 @@ def _slips(cls: type) -> Iterator[str]:
         mentioned = words_in(syntax_of(file).module)
         space = vars(sys.modules[parent.__module__])
         yield from _idle_methods(parent, definition, file, mentioned, space)
-        yield from _stray_attributes(cls, definition, file, mentioned)
+        yield from stray_attributes(cls, definition, file, mentioned)
         yield from _replaced(cls, definition, file, space)
         yield from _changed_in_place(cls, definition, file)
+        flags = flags_of(cls, definition)
         for method in definition.body:
             if isinstance(method, FunctionNode):
                 handler = declared.handlers(parent).get(method.name)
                 yield from wrong_fields(method, handler, file, space)
+                yield from whole_messages(flags, method, handler, file, space)
         module = syntax_of(file).module
         subscribed = [name for name, handler in declared.handlers(parent).items() if handler.kind == "subscription"]
         found = [
@@ -101,45 +101,6 @@ def _slips(cls: type) -> Iterator[str]:
             if not any(has_attribute(other, name) for other in other_modules(file, name)):
                 found.append((line, text))
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
-
-
-def other_modules(file: str, word: str) -> Iterator[ast.Module]:
-    """Parse the project's other modules that contain a word; they may use a definition of the file by that name."""
-    from graphflow.workspace.project import project_root
-
-    root = project_root(Path(file))
-    others = {str(path) for module in list(sys.modules.values()) if (path := file_of(module))}
-    for other in sorted(others - {file}):
-        if other.endswith(".py") and Path(other).is_relative_to(root) and not is_installed(other):
-            with suppress(OSError, SyntaxError, ValueError):  # no readable source
-                # Most do not contain it, and need not be parsed, which takes milliseconds each.
-                if word in _text(other):
-                    yield syntax_of(other).module
-
-
-@cache
-def _text(file: str) -> str:
-    return found_text(Path(file))
-
-
-@cache
-def words_in(module: ast.Module) -> set[str]:
-    """Return the attributes and names that a module reads, and its strings, but for texts that are only shown."""
-    found: set[str] = set()
-    shown: set[ast.expr] = set()
-    for node in ast.walk(module):
-        match node:
-            case ast.Call(func=function, args=arguments) if last_name(function) in _SHOWING:
-                shown.update(arguments)
-            case ast.Constant() if node in shown:
-                continue
-            case (
-                ast.Attribute(attr=word, ctx=ast.Load())
-                | ast.Name(id=word, ctx=ast.Load())
-                | ast.Constant(value=str(word))
-            ):
-                found.add(word)
-    return found
 
 
 def _idle_methods(
@@ -174,8 +135,6 @@ def _hook_meant(cls: type, name: str) -> str:
     return f"derive {cls.__name__} from LifecycleNode, whose nodes are configured and activated, or write on_start"
 
 
-_SHOWING = ("print", "debug", "info", "warning", "warn", "error", "exception", "critical", "fatal", "log")
-"""Functions whose texts name nothing: a handler often logs its own name."""
 _HOOKS = {
     "on_start": ("init", "begin", "startup", "ready", "open", "run"),
     "on_shutdown": ("stop", "end", "exit", "close", "destroy", "finish", "cleanup"),
@@ -191,34 +150,6 @@ def _received(argument: ast.arg, space: dict[str, object]) -> str:
     if type_ is None:
         return ""
     return "request" if type_.__name__ == "Request" or type_.SCHEMA.name.endswith("_Request") else "message"
-
-
-def _stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str]) -> Iterator[str]:
-    """Find attributes that are set, never read, and spelt almost as a declaration of the class."""
-    names = declared.declarations(cls)
-    for method in definition.body:
-        for node, parents in walk(method):
-            if not (isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store) and is_own(node)):
-                continue
-            if node.attr in mentioned or hasattr(cls, node.attr) or any(isinstance(p, ast.ClassDef) for p in parents):
-                continue
-            near = nearest(node.attr, names, cutoff=0.75)
-            if near is None or _is_another(node.attr, near):
-                continue
-            if not any(node.attr in words_in(module) for module in other_modules(file, node.attr)):
-                yield f"{Place(file, node.lineno)}: self.{node.attr} is set and never read; did you mean self.{near}?"
-
-
-def _is_another(name: str, near: str) -> bool:
-    """Whether a name similar to another one is likely on purpose: `speeds` and `speed`, `goal_y` and `goal_x`."""
-    short, long = sorted((name, near), key=len)
-    if long in (f"{short}s", f"{short}es", f"_{short}", f"{short}_"):
-        return True
-    return len(short) == len(long) and short[:-1] == long[:-1] and {short[-1], long[-1]} <= _COUNTING
-
-
-_COUNTING = {*"0123456789xyzabclr"}
-"""Suffixes of numbered names."""
 
 
 def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, object]) -> Iterator[str]:

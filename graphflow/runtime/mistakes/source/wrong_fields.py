@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from types import ModuleType
 
+from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, last_name, walk
 from graphflow.errors import EncodeError, Place
 from graphflow.msgs.base import Message, no_field
@@ -27,6 +28,36 @@ def wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space
         way = f"write def {method.name}({names[0]}, request, response)"
         found = [f"{Place(file, method.lineno)}: a service handler receives the request first: {way}"]
     yield from found
+
+
+def flags_of(cls: type, definition: ast.ClassDef) -> set[str]:
+    """Return the attributes of a class that are true or false at first."""
+    found = {name for name, value in vars(cls).items() if isinstance(value, bool)}
+    for node in ast.walk(definition):
+        match node:
+            case ast.Assign(targets=[ast.Attribute(attr=name) as flag], value=ast.Constant(value=bool())):
+                found |= {name} if is_own(flag) else set()
+    return found
+
+
+def whole_messages(
+    flags: Collection[str], method: FunctionNode, handler: Handler | None, file: str, space: dict[str, object]
+) -> Iterator[str]:
+    """Find messages that are stored in place of their only bool: `self.is_on = request` is true for any request.
+
+    Args:
+        flags: The attributes that are true or false.
+        handler: What the class declares the method to be.
+    """
+    received = _received(method, handler, space)
+    for node in ast.walk(method):
+        match node:
+            case ast.Assign(targets=[ast.Attribute(attr=flag) as target], value=ast.Name(id=name)) if flag in flags:
+                for type_ in received.get(name, ()):
+                    bools = [f.name for f in type_.SCHEMA.fields if f.type.base == "bool"] if type_ is not None else []
+                    if is_own(target) and len(bools) == 1:
+                        text = f"{name} is the whole message, which counts as true"
+                        yield f"{Place(file, node.lineno)}: {text}; write self.{flag} = {name}.{bools[0]}"
 
 
 def _wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space: dict[str, object]) -> Iterator[str]:

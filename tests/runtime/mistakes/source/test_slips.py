@@ -17,7 +17,7 @@ HEAD = """\
 from graphflow import Node, Param, Publisher, subscription, timer
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.geometry_msgs.msg import Twist
-from graphflow.msgs.std_msgs.msg import Int32, String
+from graphflow.msgs.std_msgs.msg import Bool, Int32, String
 
 
 class Robot(Node):
@@ -83,7 +83,10 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
             "tags = Param(['a'])\ndef work(self):\n    self.tags[0] = 'b'",
             "self.tags[0] changes a parameter's list without its checks",
         ),
-        ("def work(self):\n    self.rat = 2.0", "self.rat is set and never read; did you mean self.rate?"),
+        (
+            "is_on = False\n@subscription(Bool, 't')\ndef heard(self, m: Bool) -> None:\n    self.is_on = m",
+            "m is the whole message, which counts as true; write self.is_on = m.data",
+        ),
         *(
             (f"def work(self):\n    {owner}.rate = 2.0", f"{owner}.rate replaces what the class declares")
             for owner in ("Robot", "type(self)")
@@ -114,10 +117,7 @@ def test_slips(robot: object, body: str, told: str) -> None:
         "async def on_start(self) -> None: ...",
         "@timer(1.0)\nasync def tick(self) -> None: ...",
         "def on_pose(self, m: String) -> None: ...\nasync def on_start(self) -> None:\n    self.use(self.on_pose)",
-        "def work(self):\n    self.rats = 2.0\n    return self.rats",
-        "def work(self):\n    self.position = 2.0",
-        "def work(self):\n    self.rates = []",
-        "goal_x = Param(1.0)\ndef work(self):\n    self.goal_y = 2.0",
+        "is_on = None\n@subscription(Bool, 't')\ndef heard(self, m: Bool) -> None:\n    self.is_on = m",
         "def work(self, other):\n    Robot.times = 2\n    other.rate = 2.0\n    self.rate = 2.0",
         "def work(self, m):\n    m.dat = 'x'",
         "def work(self):\n    m = String()\n    m.data = 'x'",

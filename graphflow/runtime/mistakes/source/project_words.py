@@ -1,0 +1,57 @@
+"""The words of a project's source: whether anything refers to a definition, in its file or another one."""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+
+from graphflow.analysis.syntax import last_name, syntax_of
+from graphflow.analysis.user_code import is_installed
+from graphflow.reading import found_text
+from graphflow.runtime.callables import file_of
+
+_SHOWING = ("print", "debug", "info", "warning", "warn", "error", "exception", "critical", "fatal", "log")
+"""Functions whose texts name nothing: a handler often logs its own name."""
+
+
+def other_modules(file: str, word: str) -> Iterator[ast.Module]:
+    """Parse the project's other modules that contain a word; they may use a definition of the file by that name."""
+    from graphflow.workspace.project import project_root
+
+    root = project_root(Path(file))
+    others = {str(path) for module in list(sys.modules.values()) if (path := file_of(module))}
+    for other in sorted(others - {file}):
+        if other.endswith(".py") and Path(other).is_relative_to(root) and not is_installed(other):
+            with suppress(OSError, SyntaxError, ValueError):  # no readable source
+                # Most do not contain it, and need not be parsed, which takes milliseconds each.
+                if word in _text(other):
+                    yield syntax_of(other).module
+
+
+@cache
+def _text(file: str) -> str:
+    return found_text(Path(file))
+
+
+@cache
+def words_in(module: ast.Module) -> set[str]:
+    """Return the attributes and names that a module reads, and its strings, but for texts that are only shown."""
+    found: set[str] = set()
+    shown: set[ast.expr] = set()
+    for node in ast.walk(module):
+        match node:
+            case ast.Call(func=function, args=arguments) if last_name(function) in _SHOWING:
+                shown.update(arguments)
+            case ast.Constant() if node in shown:
+                continue
+            case (
+                ast.Attribute(attr=word, ctx=ast.Load())
+                | ast.Name(id=word, ctx=ast.Load())
+                | ast.Constant(value=str(word))
+            ):
+                found.add(word)
+    return found
