@@ -45,6 +45,11 @@ def found_text(path: Path, errors: str = "strict", bound: int = FOUND_BOUND) -> 
     return found_bytes(path, bound).decode("utf-8-sig", errors).replace("\r\n", "\n").replace("\r", "\n")
 
 
+def why_no_file(path: Path, absent: str = "there is no such file") -> str:
+    """Return why a path is not read as a file: it is a FIFO, a socket or a device, or, as `absent` says, not there."""
+    return "it is not a regular file" if path.exists() and not path.is_dir() else absent
+
+
 def _open_at_once(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 

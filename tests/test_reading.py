@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.reading import found_bytes, found_text
+from graphflow.reading import found_bytes, found_text, why_no_file
 
 pytestmark = pytest.mark.timeout(20)
 
@@ -67,3 +67,12 @@ def test_another_file_is_not_even_opened(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(os, "open", lambda _, flags: real(fifo, flags))
     with pytest.raises(OSError, match="it is not a regular file"):
         found_bytes(file)
+
+
+def test_why_there_is_no_file(tmp_path: Path) -> None:
+    """A FIFO is there, and what is not there gets the sentence of its kind."""
+    fifo = tmp_path / "bag.mcap"
+    os.mkfifo(fifo)
+    assert why_no_file(fifo) == "it is not a regular file"
+    assert why_no_file(tmp_path / "other", "there is no bag") == "there is no bag"
+    assert why_no_file(tmp_path) == "there is no such file"

@@ -17,6 +17,7 @@ from graphflow.bag.formats.metadata import FileContents
 from graphflow.bag.formats.ros1_file import Ros1File
 from graphflow.bag.nearby import suggestion
 from graphflow.errors import BagError
+from graphflow.reading import why_no_file
 
 _FILES_BOUND = 10_000
 
@@ -97,7 +98,8 @@ class Bag:
         if self.path.is_file():
             return [self.path]
         if not self.path.is_dir():
-            raise BagError(f"{self.path}: there is no such file or folder{suggestion(self.path)}")
+            why = why_no_file(self.path, f"there is no such file or folder{suggestion(self.path)}")
+            raise BagError(f"{self.path}: {why}")
         named = entries.get("relative_file_paths")
         names = [Path(_text(name)).name for name in named[:_FILES_BOUND]] if isinstance(named, list) else []
         found = [self.path / name for name in names if name and (self.path / name).is_file()]

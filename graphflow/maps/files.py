@@ -18,6 +18,7 @@ from graphflow.maps.grid import CELLS_BOUND, FREE, OCCUPIED, UNKNOWN, GridMap
 from graphflow.markup import source
 from graphflow.markup.validated import validated
 from graphflow.names import nearest
+from graphflow.reading import why_no_file
 
 FORMATS = ("pgm", "png")
 _FREE_GREY, _OCCUPIED_GREY, _UNKNOWN_GREY = 254, 0, 205
@@ -97,7 +98,7 @@ def _read_picture(file: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]
     from PIL import Image, UnidentifiedImageError
 
     if not file.is_file():
-        raise MapFileError(f"there is no picture {file}")
+        raise MapFileError(why_no_file(file, f"there is no picture {file}"))
     try:
         with Image.open(file) as image:
             if image.width * image.height > CELLS_BOUND:

@@ -79,13 +79,30 @@ def test_a_step_may_stop_the_graph(machine: Machine, project: Path) -> None:
 
 
 @pytest.mark.real
-@pytest.mark.parametrize("nodes", ["nodes:\n  /short: {command: ['true']}\n", ""])
-def test_a_graph_ends_after_its_last_step(machine: Machine, project: Path, nodes: str) -> None:
-    """A delay keeps it up after its processes have ended; without any process it ends with its steps."""
-    steps = "steps:\n  late: {delay: 0.3}\n  end: {log: it is late, after: late}\n"
-    up = machine.start("up", write(project, nodes + steps), cwd=project)
+def test_a_graph_ends_after_its_last_step(machine: Machine, project: Path) -> None:
+    """A delay keeps it up after its processes have ended."""
+    text = (
+        "nodes:\n  /short: {command: ['true']}\nsteps:\n  late: {delay: 0.3}\n  end: {log: it is late, after: late}\n"
+    )
+    up = machine.start("up", write(project, text), cwd=project)
     assert up.wait() == 0
     assert up.text.index("it is late") < up.text.index("has ended")
+
+
+@pytest.mark.real
+def test_a_launch_file_that_starts_no_process(machine: Machine, project: Path) -> None:
+    """Ends with its last action."""
+    text = """\
+from launch import LaunchDescription
+from launch.actions import LogInfo, TimerAction
+
+
+def generate_launch_description():
+    return LaunchDescription([TimerAction(period=0.3, actions=[LogInfo(msg="it is late")])])
+"""
+    launch = machine.start("launch", write(project, text, "late.launch.py"), cwd=project)
+    assert launch.wait() == 0
+    assert launch.text.index("it is late") < launch.text.index("has ended")
 
 
 TYPE = "example_interfaces/srv/AddTwoInts"

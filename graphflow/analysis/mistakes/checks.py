@@ -10,6 +10,7 @@ from typing import Final, TypeAlias
 from graphflow.analysis.mistakes.calls.busy_loops import busy_loops
 from graphflow.analysis.mistakes.calls.called_early import results_passed
 from graphflow.analysis.mistakes.calls.defined_twice import defined_twice
+from graphflow.analysis.mistakes.calls.single_transforms import single_transforms
 from graphflow.analysis.mistakes.units.contrary_names import contrary_names
 from graphflow.analysis.mistakes.units.literal_units import literal_units
 from graphflow.analysis.mistakes.units.lone_nanoseconds import lone_nanoseconds
@@ -36,6 +37,7 @@ IN_CODE: Final[tuple[Callable[[ast.AST], Found], ...]] = (
     angles_as_quaternions,
     busy_loops,
     lone_nanoseconds,
+    single_transforms,
 )
 """Checks of any code, such as one class."""
 

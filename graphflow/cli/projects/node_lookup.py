@@ -17,6 +17,7 @@ from graphflow.cli.substitutes import no_package
 from graphflow.errors import GraphflowError, NoModule, RunsWhenImported, UsageFault
 from graphflow.graph.model import class_meant
 from graphflow.names import did_you_mean, nearest
+from graphflow.reading import why_no_file
 from graphflow.supervisor.launching.classes import (
     add_root,
     import_class,
@@ -205,7 +206,7 @@ def _no_such_package(what: str, executable: str, workspace: Workspace) -> str:
 def _module_of(file: Path, root: Path) -> str:
     """Return the name by which a file is imported from its project."""
     if not file.is_file():
-        raise UsageFault(f"{file}: there is no such file{_instead_of(file)}")
+        raise UsageFault(f"{file}: {why_no_file(file, f'there is no such file{_instead_of(file)}')}")
     name = ".".join(file.resolve().relative_to(root).with_suffix("").parts)
     if name in sys.stdlib_module_names or _is_loaded_from_elsewhere(name, file):
         owner = f"Python's module {name}" if name in sys.stdlib_module_names else f"the package {name}"

@@ -285,7 +285,8 @@ def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], va
     if len(path) == 2 and path[0] == "args" and not isinstance(value, (dict, list)):
         return f"{where}: expected {text}; write {path[1]}: {rewritten.flow({'default': value})}"
     got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
-    return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{example(*path)}"
+    shown = example(*path) or (example(*path[:-1]) if value is None else "")  # a key without a value, as in {a, b}
+    return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{shown}"
 
 
 _IN_SECONDS = ("delay", "max_delay", "within", "timeout")

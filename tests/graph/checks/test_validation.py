@@ -104,6 +104,13 @@ def test_a_key_with_a_typo_is_not_missing_too() -> None:
             "{class: x:Y, delay: 2.0}",
             ["unknown key 'delay'; a step waits: steps: {soon: {delay: 2.0}}, and after: soon at the node"],
         ),
+        (
+            "{class: x:Y, remap: {a, /b}}",
+            [
+                "remap.a: expected text, got nothing, for example remap: {goal: /turtle1/pose}",
+                "remap./b: expected text, got nothing, for example remap: {goal: /turtle1/pose}",
+            ],
+        ),
         ("class:x:Y", ["a: write a space after 'class:'"]),
     ],
 )

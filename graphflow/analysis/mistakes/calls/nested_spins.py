@@ -12,7 +12,10 @@ _TAKERS = {"create_timer": 1, "create_subscription": 2, "create_service": 2}
 
 
 def nested_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
-    """Find the lines of callbacks that spin `self`; each comes with what happens."""
+    """Find the lines of callbacks that spin `self` once; each comes with what happens.
+
+    One that spins it for ever keeps its group, which is reported as it happens.
+    """
     calls = [node for node in ast.walk(module) if isinstance(node, ast.Call)]
     given = [(call, _TAKERS[last_name(call.func)]) for call in calls if last_name(call.func) in _TAKERS]
     callbacks = {last_name(call.args[at]) for call, at in given if len(call.args) > at}
@@ -21,8 +24,9 @@ def nested_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
             continue
         for node in ast.walk(method):
             match node:
-                case ast.Call(func=ast.Attribute(value=ast.Name("rclpy"), attr=spin), args=[ast.Name("self"), *_]):
-                    if spin in ("spin", "spin_once"):
-                        text = f"rclpy.{spin}(self) in the callback {method.name} waits for callbacks of this node"
-                        way = f"which wait for {method.name}: leave it out, since main spins the node"
-                        yield node.lineno, f"{text}, {way}"
+                case ast.Call(
+                    func=ast.Attribute(value=ast.Name("rclpy"), attr="spin_once"), args=[ast.Name("self"), *_]
+                ):
+                    text = f"rclpy.spin_once(self) in the callback {method.name} waits for callbacks of this node"
+                    way = f"which wait for {method.name}: leave it out, since main spins the node"
+                    yield node.lineno, f"{text}, {way}"

@@ -16,6 +16,7 @@ from graphflow.tf.poses import Pose
 from graphflow.tf.transform import fill, pose_of
 from rclpy.duration import Duration
 from rclpy.impl.rcutils_logger import RcutilsLogger
+from rclpy.impl.watches.unknown_frames import UnknownFrames
 from rclpy.logging import get_logger
 from rclpy.time import Time
 from tf2_py.exceptions import InvalidArgumentException, TransformException, in_words_of_tf2
@@ -54,6 +55,7 @@ class BufferCore:
         self._graphflow_frames = Frames(kept)
         self._graphflow_authorities: dict[str, str] = {}
         self._graphflow_lock = threading.Lock()
+        self._graphflow_unknown = UnknownFrames()
 
     def set_transform(self, transform: TransformStamped, authority: str = DEFAULT_AUTHORITY) -> None:
         """Add a transform; an invalid one is dropped and logged."""
@@ -103,6 +105,7 @@ class BufferCore:
             with self._graphflow_lock:
                 return self._graphflow_frames.find(target, source, stamp)
         except TransformError as error:
+            self._graphflow_unknown.lookup_failed(error)
             raise in_words_of_tf2(error) from None
 
     def lookup_transform_full_core(

@@ -24,7 +24,7 @@ _DECLARING |= {"Publisher", "Subscription", "Client", "ActionClient", "Param", "
 _OF_NODES = {
     "name": 'choose another attribute; the node\'s own name is given by super().__init__("bob") or node_name = "bob"',
     **dict.fromkeys(
-        ("namespace", "full_name", "context", "clock", "group", "endpoints", "is_running", "derivations"),
+        ("namespace", "full_name", "context", "clock", "group", "endpoints", "is_running", "derivations", "log"),
         "choose another name",
     ),
 }

@@ -132,7 +132,7 @@ def test_what_is_no_slip(robot: object, body: str) -> None:
     assert slips(robot(body)) == ()  # type: ignore[operator]
 
 
-@pytest.mark.parametrize("name", ["name", "context", "clock", "group"])
+@pytest.mark.parametrize("name", ["name", "context", "clock", "group", "log"])
 def test_what_every_node_has_cannot_be_set(robot: object, name: str) -> None:
     """The line is reported before a node is made."""
     cls = robot(f"def work(self):\n    self.{name} = 'bob'")  # type: ignore[operator]

@@ -1,0 +1,74 @@
+"""Transforms that are sent once, at a start, by what is for those that change: nobody finds them a moment later."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.syntax import FunctionNode, last_name, walk
+
+_SENDERS = {"Transforms": "send", "TransformBroadcaster": "sendTransform"}
+"""Classes that send transforms, and their methods that do."""
+_STATIC = {"send": "write {}.send_static", "sendTransform": "take a StaticTransformBroadcaster"}
+_STARTS = ("__init__", "on_start")
+_LOOPS = ast.For | ast.AsyncFor | ast.While | ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp
+_REPEATED = _LOOPS | ast.Lambda | ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+
+
+def single_transforms(code: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find the lines that send a transform of a class whose nodes send none later; each comes with its correction."""
+    for definition in ast.walk(code):
+        if isinstance(definition, ast.ClassDef):
+            for name, way in _senders(definition).items():
+                yield from _single(definition, name, way)
+
+
+def _senders(definition: ast.ClassDef) -> dict[str, str]:
+    """Return the attributes that send transforms, each with the method that does."""
+    found: dict[str, str] = {}
+    for node in ast.walk(definition):
+        match node:
+            case ast.Assign(
+                targets=[ast.Name(id=name) | ast.Attribute(value=ast.Name(id="self"), attr=name)],
+                value=ast.Call(func=function),
+            ) if (way := _SENDERS.get(last_name(function))) is not None:
+                found[name] = way
+    return found
+
+
+def _single(definition: ast.ClassDef, name: str, way: str) -> Iterator[tuple[int, str]]:
+    uses = [(use, parents) for use, parents in walk(definition) if isinstance(use, ast.Attribute) and use.attr == name]
+    uses = [(use, parents) for use, parents in uses if isinstance(use.ctx, ast.Load)]
+    if not all(is_own(use) and isinstance(parents[-1], ast.Attribute) for use, parents in uses):
+        return  # it is passed on, and may be used anywhere
+    sends = [(use, parents) for use, parents in uses if getattr(parents[-1], "attr", "") == way]
+    methods = {*_STARTS, *_called_at_start(definition)}
+    if all(_runs_once(parents, methods) for _, parents in sends):
+        for use, _ in sends:
+            text = f"{ast.unparse(use)}.{way} runs once, and its transform holds for that moment alone"
+            static = _STATIC[way].format(ast.unparse(use))
+            yield use.lineno, f"{text}; for one that never changes, {static}; send others again, as in a timer"
+
+
+def _called_at_start(definition: ast.ClassDef) -> Iterator[str]:
+    """Yield the methods that are only called, and only where a node starts."""
+    uses: dict[str, list[Sequence[ast.AST]]] = {}
+    for node, parents in walk(definition):
+        if isinstance(node, ast.Attribute) and is_own(node):
+            uses.setdefault(node.attr, []).append([*parents, node])
+    for method in definition.body:
+        if isinstance(method, FunctionNode) and (found := uses.get(method.name)) and not method.decorator_list:
+            calls = [isinstance(path[-2], ast.Call) and path[-2].func is path[-1] for path in found]
+            if all(calls) and all(_runs_once(path, set(_STARTS)) for path in found):
+                yield method.name
+
+
+def _runs_once(parents: Sequence[ast.AST], methods: set[str]) -> bool:
+    """Whether something in a class runs once, when one of its methods does: outside loops and inner functions."""
+    _, method, *inner = parents
+    return (
+        isinstance(method, FunctionNode)
+        and method.name in methods
+        and not any(isinstance(node, _REPEATED) for node in inner)
+    )

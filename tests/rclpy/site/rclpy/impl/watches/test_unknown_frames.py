@@ -1,0 +1,34 @@
+"""Lookups of frames that do not exist."""
+
+from __future__ import annotations
+
+import pytest
+from geometry_msgs.msg import TransformStamped
+from tf2_ros import Buffer, LookupException
+
+from rclpy.impl.watches import unknown_frames
+from rclpy.time import Time
+
+
+def asked(buffer: Buffer, frame: str) -> None:
+    with pytest.raises(LookupException, match="does not exist"):
+        buffer.lookup_transform("world", frame, Time())
+
+
+def test_a_misspelt_frame_is_told_once(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not before others are known, and a while after the first lookup; with its line and the nearest frame."""
+    buffer, sent = Buffer(), TransformStamped()
+    monkeypatch.setattr(unknown_frames, "WARN_AFTER", 0.0)
+    asked(buffer, "carot")
+    sent.header.frame_id, sent.child_frame_id = "world", "carrot"
+    sent.transform.rotation.w = 1.0
+    buffer.set_transform(sent, "test")
+    monkeypatch.setattr(unknown_frames, "WARN_AFTER", 60.0)
+    asked(buffer, "carot")
+    assert "carot" not in caplog.text
+    monkeypatch.setattr(unknown_frames, "WARN_AFTER", 0.0)
+    for _ in range(2):
+        asked(buffer, "carot")
+    [text] = [record.getMessage() for record in caplog.records if "carot" in record.getMessage()]
+    assert text.partition(": ")[0] == f"test_unknown_frames.py:{asked.__code__.co_firstlineno + 2}"
+    assert "there is no frame 'carot'; did you mean 'carrot'?; the known frames are carrot, world" in text
