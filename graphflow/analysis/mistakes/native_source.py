@@ -6,6 +6,7 @@ import ast
 from collections.abc import Callable, Collection, Iterator
 from typing import Final
 
+from graphflow.analysis.mistakes.calls.blocking_async import blocking_async
 from graphflow.analysis.mistakes.calls.misgiven import misgiven
 from graphflow.analysis.mistakes.calls.misplaced import misplaced
 from graphflow.analysis.mistakes.calls.separate_groups import separate_groups
@@ -20,6 +21,7 @@ _IN_CLASSES: Final[tuple[Callable[[ast.ClassDef], Found], ...]] = (
     separate_groups,
     added_arrays,
     caught_in_vain,
+    blocking_async,
 )
 """Checks of native nodes alone."""
 

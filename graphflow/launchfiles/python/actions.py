@@ -140,7 +140,7 @@ def _timer(call: RecordedCall) -> Action:
 
 
 def _include(call: RecordedCall) -> Action:
-    given = call.get("launch_arguments", default=None) or {}
+    given = call.get("launch_arguments", default=None) or ()
     if isinstance(given, dict):  # ROS 2 unpacks each name as if it were a pair, and fails
         RECORDING.problem(call, f"{call.kind}: launch_arguments is a list of pairs: write .items() behind the dict")
     arguments = dict(given)

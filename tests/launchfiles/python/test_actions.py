@@ -229,6 +229,7 @@ def test_arguments_that_are_no_pairs(problems: list[Finding]) -> None:
     right = said("IncludeLaunchDescription", source, launch_arguments={"x": "6.0"}.items())
     wrong = said("IncludeLaunchDescription", source, launch_arguments={"x": "6.0"})
     assert actions([right]) == expected
+    actions([said("IncludeLaunchDescription", source)])
     assert problems == []
     actions([wrong])
     [problem] = problems

@@ -6,8 +6,10 @@ import ast
 import math
 from collections.abc import Iterator, Sequence
 from functools import cache
+from itertools import pairwise
 
 from graphflow.analysis.bindings import Bindings, bindings_of
+from graphflow.analysis.mistakes.pose_names import PoseNames, pose_names
 from graphflow.analysis.syntax import last_name, walk
 
 _PERIODS = {"timer", "create_timer", "every", "create_rate"}
@@ -25,8 +27,10 @@ _LEAST_DEGREES = 10
 def literal_units(module: ast.Module) -> tuple[tuple[int, str], ...]:
     """Return the lines with such numbers; each comes with a sentence."""
     found: list[tuple[int, str]] = []
-    bindings = bindings_of(module)
+    bindings, names = bindings_of(module), pose_names(module)
     for node, parents in walk(module):
+        if isinstance(node, ast.Compare):
+            found += _compared(node, names, parents)
         if isinstance(node, ast.Call):
             found += _of_period(node, bindings, parents)
             found += _of_angles(node)
@@ -70,6 +74,20 @@ def _of_angles(call: ast.Call) -> Iterator[tuple[int, str]]:
         if number is not None and abs(number) >= _LEAST_DEGREES and float(number).is_integer():
             radians = math.radians(number)
             yield value.lineno, f"{name} is in radians: {number:g} degrees are {radians:.4g}, math.radians({number:g})"
+
+
+def _compared(comparison: ast.Compare, names: PoseNames, parents: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
+    """Find comparisons of a pose's angle with a number of degrees, which it never reaches."""
+    sides = [comparison.left, *comparison.comparators]
+    for angle, other in (*pairwise(sides), *pairwise(reversed(sides))):
+        number = _number(other)
+        if number is None or abs(number) < _LEAST_DEGREES:
+            continue
+        match angle:
+            case ast.Attribute(value=pose, attr="theta") if names.is_pose(pose, parents):
+                text = f"{ast.unparse(angle)} is in radians, from -3.142 to 3.142"
+                way = f"{number:g} degrees are {math.radians(number):.4g}, math.radians({number:g})"
+                yield comparison.lineno, f"{text}: {way}"
 
 
 def _parts(value: ast.expr) -> list[ast.expr]:

@@ -6,7 +6,7 @@ Only names that nothing reads are told, and only messages that their handler doe
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 
 from graphflow.analysis.attribute_uses import is_own
@@ -22,6 +22,8 @@ def lost_values(module: ast.Module) -> tuple[tuple[int, str], ...]:
     classes = [node for node in ast.walk(module) if isinstance(node, ast.ClassDef)]
     messages = _messages(module)
     found = [slip for cls in classes for slip in (*_locals(cls), *_returned(module, cls, messages))]
+    for method in (node for cls in classes for node in cls.body if isinstance(node, FunctionNode)):
+        found += _only_made(method, messages) if messages else ()
     return tuple(sorted(found))
 
 
@@ -71,6 +73,48 @@ def _messages(module: ast.Module) -> set[str]:
     """Return the names of message classes that a file imports."""
     imports = [node for node in ast.walk(module) if isinstance(node, ast.ImportFrom)]
     return {alias.asname or alias.name for node in imports if str(node.module).endswith(".msg") for alias in node.names}
+
+
+def _only_made(method: FunctionNode, messages: set[str]) -> Iterator[tuple[int, str]]:
+    """Find messages that a method makes and fills, and nothing reads."""
+    used: set[str] = set()
+    for node, parents in walk(method):
+        match node:
+            case ast.Name(id="locals" | "vars" | "eval" | "exec"):
+                return
+            case ast.Name(id=name, ctx=ast.Load() | ast.Del()) if not _is_filled(node, parents):
+                used.add(name)
+            case ast.Name(id=name, ctx=ast.Store()) if not _is_made(parents[-1], messages):
+                used.add(name)  # it also stands for something else
+            case ast.Global(names=names) | ast.Nonlocal(names=names):
+                used.update(names)
+    for node, parents in walk(method):
+        match node:
+            case ast.Expr(value=ast.Call(func=function)) if last_name(function) in messages:
+                if not any(isinstance(parent, ast.With | ast.AsyncWith | ast.Try) for parent in parents):
+                    yield node.lineno, f"{ast.unparse(node)} makes a message that nothing uses; publish it"
+            case ast.Assign(targets=[ast.Name(id=name)]) if name not in used and _is_made(node, messages):
+                yield node.lineno, f"{name} is a message that nothing reads; publish it, as in .publish({name})"
+
+
+def _is_made(node: ast.AST, messages: set[str]) -> bool:
+    """Whether a statement assigns a new message to a name."""
+    match node:
+        case ast.Assign(targets=[ast.Name()], value=ast.Call(func=function)):
+            return last_name(function) in messages
+    return False
+
+
+def _is_filled(name: ast.AST, parents: Sequence[ast.AST]) -> bool:
+    """Whether a name begins the left side of an assignment to one of its fields."""
+    below = name
+    for parent in reversed(parents):
+        if not isinstance(parent, ast.Attribute | ast.Subscript) or parent.value is not below:
+            return False
+        if isinstance(parent.ctx, ast.Store):
+            return True
+        below = parent
+    return False
 
 
 def _returned(module: ast.Module, cls: ast.ClassDef, messages: set[str]) -> Iterator[tuple[int, str]]:

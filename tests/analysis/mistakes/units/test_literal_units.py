@@ -21,6 +21,13 @@ from graphflow.analysis.mistakes.units.literal_units import literal_units
         ),
         ("Transform.of('a', 'b', rpy=(0.0, 0, -90))", "rpy is in radians: -90 degrees are -1.571, math.radians(-90)"),
         ("Spawn.Request(x=1.0, theta=180.0)", "theta is in radians: 180 degrees are 3.142"),
+        (
+            "from turtlesim.msg import Pose\n"
+            "class A:\n"
+            "    def __init__(self): self.create_subscription(Pose, 'pose', self.moved, 1)\n"
+            "    def moved(self, pose): return pose.theta > 90",
+            "pose.theta is in radians, from -3.142 to 3.142: 90 degrees are 1.571",
+        ),
         ("quaternion_from_euler(0, 0, 45)", "an angle is in radians: 45 degrees are 0.7854"),
     ],
 )
@@ -36,6 +43,7 @@ def test_numbers_in_another_unit(code: str, told: str) -> None:
         *("timer(60)", "timer(300)", "timer(3600)", "timer(500.0)", "timer(0.5)", "timer(True)", "timer(rate)"),
         *("period = 0.5\ntimer(period)", "period = 500\nperiod = 0.5\ntimer(period)", "def f(x): timer(x)"),
         *("Pose(theta=9.42)", "Pose(theta=5)", "Pose(theta=15.5)", "draw(angle=math.radians(90))", "move(x=90)"),
+        *("pose.theta > 90", "def f(self, robot): return robot.theta > 90"),
         *("self.create_rate(100)", "quaternion_from_euler(0, 0, yaw)"),
     ],
 )

@@ -58,6 +58,12 @@ def _told(source: str, line: str) -> list[str]:
             "msg = Twist()\n        msg.linear.x = 2.0\n        return msg",
             DROPS.format("timer", "cmd_vel", "msg"),
         ),
+        (
+            NATIVE,
+            "msg = Twist()\n        msg.linear.x = 2.0",
+            "msg is a message that nothing reads; publish it, as in .publish(msg)",
+        ),
+        (NATIVE, "Twist()", "Twist() makes a message that nothing uses; publish it"),
         (RCLPY, "return Twist()", DROPS.format("subscription", "pub", "Twist()")),
     ],
 )
@@ -89,6 +95,12 @@ def test_lost_values(source: str, line: str, told: str) -> None:
         (NATIVE, "return Twist()\n\n    async def again(self):\n        self.cmd_vel.publish(await self.drive())"),
         (RCLPY, "return Twist()\n\n    def again(self):\n        self.pub.publish(self.drive(None))"),
         (RCLPY, "return 1"),
+        (NATIVE, "msg = Twist()\n        msg.linear.x = 2.0\n        self.cmd_vel.publish(msg)"),
+        (NATIVE, "msg = Twist()\n        self.list[msg] = 1"),
+        (NATIVE, "msg = Twist()\n        self.use(lambda: msg)"),
+        (NATIVE, "msg = Twist()\n        msg = self.latest\n        msg.linear.x = 2.0"),
+        (NATIVE, "msg = Other()\n        msg.linear = 2.0"),
+        (NATIVE, "with raises(Error):\n            Twist(linear=1)"),
         (RCLPY, "message = 1\n        return message"),
     ],
 )

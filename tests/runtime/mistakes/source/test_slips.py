@@ -91,14 +91,17 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
             (f"def work(self):\n    {owner}.rate = 2.0", f"{owner}.rate replaces what the class declares")
             for owner in ("Robot", "type(self)")
         ),
-        ("def work(self):\n    m = String()\n    m.dat = 'x'", "String has no field 'dat'; did you mean 'data'?"),
+        (
+            "def work(self):\n    m = String()\n    m.dat = 'x'\n    return m",
+            "String has no field 'dat'; did you mean 'data'?",
+        ),
         (
             "@subscription(String, 't')\ndef heard(self, m: String) -> None:\n    m.dat = 'x'",
             "String has no field 'dat'",
         ),
-        ("def work(self):\n    m = Int32()\n    m.data = 'x'", "Int32.data: expected int32, got 'x'"),
+        ("def work(self):\n    m = Int32()\n    m.data = 'x'\n    return m", "Int32.data: expected int32, got 'x'"),
         (
-            "def work(self):\n    m = Twist()\n    m.linear = 3",
+            "def work(self):\n    m = Twist()\n    m.linear = 3\n    return m",
             "Twist.linear: expected geometry_msgs/msg/Vector3, got 3",
         ),
     ],
@@ -120,8 +123,8 @@ def test_slips(robot: object, body: str, told: str) -> None:
         "is_on = None\n@subscription(Bool, 't')\ndef heard(self, m: Bool) -> None:\n    self.is_on = m",
         "def work(self, other):\n    Robot.times = 2\n    other.rate = 2.0\n    self.rate = 2.0",
         "def work(self, m):\n    m.dat = 'x'",
-        "def work(self):\n    m = String()\n    m.data = 'x'",
-        "def work(self):\n    m = String()\n    m = object()\n    m.dat = 'x'",
+        "def work(self):\n    m = String()\n    m.data = 'x'\n    return m",
+        "def work(self):\n    m = String()\n    m = object()\n    m.dat = 'x'\n    return m",
         "def helper(self, pose): ...",
         "def work(self, messages):\n    m = String()\n    for m in messages:\n        m.dat = 'x'",
         "def work(self):\n    m = self.port.inbox.read()\n    m.dat = 'x'",

@@ -1,0 +1,39 @@
+"""Lines of an `async def` that stop its whole event loop: `time.sleep`, and an endless loop without an `await`."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+
+from graphflow.analysis.syntax import walk
+
+_SHORT = 0.05
+"""Seconds that a sleep may take without anybody noticing."""
+_PAUSES = ast.Await | ast.AsyncFor | ast.AsyncWith | ast.Break | ast.Return | ast.Raise | ast.Yield | ast.YieldFrom
+"""What lets others run, or ends a loop."""
+
+
+def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find such lines; each comes with what to write."""
+    for node, parents in walk(code):
+        if not _is_async(parents):
+            continue
+        match node:
+            case ast.Call(func=ast.Attribute(value=ast.Name("time"), attr="sleep"), args=[time]) if not _is_short(time):
+                text = "time.sleep in an async def stops every handler of the process"
+                yield node.lineno, f"{text}; write await self.clock.sleep({ast.unparse(time)})"
+            case ast.While(test=ast.Constant(value=True | 1)):
+                if not any(isinstance(part, _PAUSES) for part in ast.walk(node)):
+                    text = "this loop never awaits, so no other handler of the process runs"
+                    yield node.lineno, f"{text}; end each turn with await self.clock.sleep(0.1), or write @timer(0.1)"
+
+
+def _is_async(parents: Sequence[ast.AST]) -> bool:
+    """Whether the innermost function around a node is an `async def`."""
+    functions = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+    inner = next((parent for parent in reversed(parents) if isinstance(parent, functions)), None)
+    return isinstance(inner, ast.AsyncFunctionDef)
+
+
+def _is_short(time: ast.expr) -> bool:
+    return isinstance(time, ast.Constant) and isinstance(time.value, int | float) and time.value < _SHORT
