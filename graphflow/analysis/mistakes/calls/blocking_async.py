@@ -10,7 +10,7 @@ from graphflow.analysis.syntax import walk
 _SHORT = 0.05
 """Seconds that a sleep may take without anybody noticing."""
 _PAUSES = ast.Await | ast.AsyncFor | ast.AsyncWith | ast.Break | ast.Return | ast.Raise | ast.Yield | ast.YieldFrom
-"""What lets others run, or ends a loop."""
+"""Syntax that lets others run, or ends a loop."""
 
 
 def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
