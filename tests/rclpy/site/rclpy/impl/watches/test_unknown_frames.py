@@ -6,6 +6,7 @@ import pytest
 from geometry_msgs.msg import TransformStamped
 from tf2_ros import Buffer, LookupException
 
+from graphflow.errors import UnknownFrame
 from rclpy.impl.watches import unknown_frames
 from rclpy.time import Time
 
@@ -32,3 +33,11 @@ def test_a_misspelt_frame_is_told_once(caplog: pytest.LogCaptureFixture, monkeyp
     [text] = [record.getMessage() for record in caplog.records if "carot" in record.getMessage()]
     assert text.partition(": ")[0] == f"test_unknown_frames.py:{asked.__code__.co_firstlineno + 2}"
     assert "there is no frame 'carot'; did you mean 'carrot'?; the known frames are carrot, world" in text
+
+
+def test_no_more_frames_are_kept_than_the_bound() -> None:
+    """A program may look up ever new names."""
+    kept = unknown_frames.UnknownFrames()
+    for number in range(2 * unknown_frames._FRAMES_BOUND):
+        kept.lookup_failed(UnknownFrame("no frame", "world", f"f{number}", f"f{number}"))
+    assert len(kept._since) == unknown_frames._FRAMES_BOUND
