@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -145,6 +146,7 @@ def test_the_project_that_one_is_in(project: Path) -> None:
 )
 def test_a_file_that_hides_a_module(name: str, owner: str, project: Path) -> None:
     """Would not be imported, or not be the only one that is hidden: it needs another name."""
+    importlib.import_module(name)  # as most verbs have
     (project / f"{name}.py").write_text("from graphflow import Node\n\n\nclass N(Node): ...\n")
     with pytest.raises(UsageFault, match=f"a file of this name hides {owner}, .* rename it: my_{name}.py"):
         find_class(str(project / f"{name}.py"), [])

@@ -86,7 +86,7 @@ async def test_layers(graph: Graph) -> None:
         assert drawing.path == [(1.0, 0.0), (2.0, 0.0)]
         assert drawing.footprint[0] == pytest.approx((1.1, 0.1))
         assert drawing.others == {"two": (2.0, 1.0, 0.0)}
-        assert "two" in s.text
+        await s.until("two")  # drawn with the next frame
 
 
 async def test_a_goal_that_no_node_takes(graph: Graph) -> None:
