@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import replace
+from itertools import islice
 
 from graphflow.cli import output
 from graphflow.cli.messages.conditions import compile_condition
@@ -27,7 +28,7 @@ POLL = 0.05
 """Seconds between two checks for new topics and output."""
 QOS = replace(BEST_AVAILABLE, durability=Durability.VOLATILE, depth=2000)
 """QoS of the subscriptions: no messages from before, and a depth that takes bursts."""
-TYPES = 4
+TYPES_BOUND = 4
 """The types of one topic that are measured, at most: a misleading announcement must not hide the others."""
 SILENT = 2.0
 """Seconds without messages after which a warning is printed."""
@@ -138,10 +139,9 @@ async def _measure(
     has_warned = False
     while not failed:
         for topic in sorted(waiting):
-            kinds = list(dict.fromkeys((p.type, p.hash) for p in cache.endpoints(Kind.PUBLISHER, topic)))[:TYPES]
-            if kinds:
+            if publishers := cache.endpoints(Kind.PUBLISHER, topic):
                 waiting.discard(topic)
-                _listen_to_all(topic, kinds, listen)
+                _listen_to_all(topic, [(publisher.type, publisher.hash) for publisher in publishers], listen)
         await clock.sleep(POLL)
         now_ns = clock.monotonic_ns()
         if now_ns >= next_ns:
@@ -155,12 +155,13 @@ async def _measure(
     raise failed[0]
 
 
-def _listen_to_all(topic: str, kinds: list[tuple[str, str]], listen: Callable[[str, str, str], object]) -> None:
-    """Listen to a topic with each of its types and hashes.
+def _listen_to_all(topic: str, announced: Iterable[tuple[str, str]], listen: Callable[[str, str, str], object]) -> None:
+    """Listen to a topic with each of its types and hashes, up to `TYPES_BOUND`.
 
     Raises:
         UsageFault: The only type cannot be measured; of several, the others are.
     """
+    kinds = list(islice(dict.fromkeys(announced), TYPES_BOUND))
     if len(kinds) > 1:
         several = " and ".join(dict.fromkeys(type_name for type_name, _ in kinds))
         output.talk(f"WARNING: {topic} is published with several types, and all are measured: {several}")

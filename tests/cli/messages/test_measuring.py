@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from graphflow.cli.messages.measuring import TYPES_BOUND, _listen_to_all
+from graphflow.errors import UsageFault
 from tests.cases import slow
 from tests.conftest import Machine
-
-pytestmark = pytest.mark.real
 
 NODE = """
 from graphflow import Node, Param, Publisher, timer
@@ -52,6 +52,35 @@ def things(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Machine]:
     machine.close()
 
 
+def heard_of(announced: list[tuple[str, str]], broken: str = "") -> list[str]:
+    """Return the types with which a topic is listened to; `broken` cannot be measured."""
+    heard = []
+
+    def listen(topic: str, type_name: str, type_hash: str) -> None:
+        if type_name == broken:
+            raise UsageFault(f"{topic}: {type_name} is not known")
+        heard.append(type_name)
+
+    _listen_to_all("/t", announced, listen)
+    return heard
+
+
+def test_a_topic_of_several_types(capsys: pytest.CaptureFixture[str]) -> None:
+    """Each is measured, and a warning names them; one that cannot be measured does not hide the others."""
+    assert heard_of([("a", "1"), ("b", "2"), ("a", "1")], broken="a") == ["b"]
+    told = capsys.readouterr().err
+    assert "/t is published with several types, and all are measured: a and b" in told
+    assert "WARNING: /t: a is not known" in told
+    with pytest.raises(UsageFault, match="a is not known"):
+        heard_of([("a", "1"), ("a", "1")], broken="a")
+    assert capsys.readouterr().err == ""
+
+
+def test_no_more_types_than_the_bound() -> None:
+    """Anybody may announce types."""
+    assert len(heard_of([(f"t{i}", "") for i in range(TYPES_BOUND + 3)])) == TYPES_BOUND
+
+
 def watch(machine: Machine, *words: str, until: str) -> str:
     program = machine.start("topic", *words, cwd=Path("/"))
     text = program.wait_for(until)
@@ -60,6 +89,7 @@ def watch(machine: Machine, *words: str, until: str) -> str:
 
 
 @slow
+@pytest.mark.real
 def test_a_type_that_is_only_there(things: Machine) -> None:
     """Its definition comes from the node; it is looked at, measured and published like any other."""
     text = things.run("topic", "echo", "/things", "--once", cwd=Path("/"))
@@ -70,6 +100,7 @@ def test_a_type_that_is_only_there(things: Machine) -> None:
 
 
 @slow
+@pytest.mark.real
 def test_hz(things: Machine) -> None:
     """The rate of messages is printed in ROS 2's format."""
     text = watch(things, "hz", "/things", until="window: 1")
@@ -81,6 +112,7 @@ def test_hz(things: Machine) -> None:
 
 
 @slow
+@pytest.mark.real
 def test_a_single_message(things: Machine) -> None:
     """Has no rate, and makes no line."""
     program = things.start("topic", "hz", "/once", cwd=Path("/"))
@@ -93,6 +125,7 @@ def test_a_single_message(things: Machine) -> None:
 
 
 @slow
+@pytest.mark.real
 def test_hz_of_some_and_of_several(things: Machine) -> None:
     """Only messages that fit, of a type that was learned; several topics in a table."""
     text = watch(things, "hz", "/things", "--filter", "m.x == 1", until="average rate")
@@ -102,6 +135,7 @@ def test_hz_of_some_and_of_several(things: Machine) -> None:
 
 
 @slow
+@pytest.mark.real
 def test_bw(things: Machine) -> None:
     """Payload bytes."""
     text = watch(things, "bw", "/things", until="Message size")
@@ -110,6 +144,7 @@ def test_bw(things: Machine) -> None:
 
 
 @slow
+@pytest.mark.real
 def test_delay(things: Machine) -> None:
     """By the stamp in the header."""
     text = watch(things, "delay", "/things", until="average delay")
@@ -117,6 +152,7 @@ def test_delay(things: Machine) -> None:
 
 
 @slow
+@pytest.mark.real
 def test_what_cannot_be_measured(things: Machine) -> None:
     """The error says why; a missing topic is waited for, and the nearest one is suggested."""
     assert "has no header, so no stamp from which a delay could be measured" in things.run(
@@ -127,6 +163,7 @@ def test_what_cannot_be_measured(things: Machine) -> None:
 
 
 @slow
+@pytest.mark.real
 @pytest.mark.parametrize(
     ("words", "number"),
     [("hz /things /rosout", "rate"), ("bw /things", "bytes_per_second"), ("delay /things", "delay")],
