@@ -49,7 +49,7 @@ class RobotDrawing:
         wall_size: The size of these cells in metres.
         path: The planned path.
         footprint: The corners of the robot's outline.
-        goal: Where the robot is to go: x, y, heading.
+        goal: Where the robot is to go: x, y.
         others: Other robots by name.
         cursor: A place that is being chosen.
         radius: Metres from the middle to the nearer edge.
@@ -65,7 +65,7 @@ class RobotDrawing:
     wall_size: float = 0.05
     path: list[tuple[float, float]] = field(default_factory=list)
     footprint: list[tuple[float, float]] = field(default_factory=list)
-    goal: tuple[float, float, float] | None = None
+    goal: tuple[float, float] | None = None
     others: dict[str, tuple[float, float, float]] = field(default_factory=dict)
     cursor: tuple[float, float] | None = None
     radius: float = 3.0
@@ -159,7 +159,7 @@ class MapCanvas(Widget):
         self._marks = {}
         bold = Style(bold=True)
         if drawing.goal is not None:
-            self._put(*drawing.goal[:2], "✚", colours.good + bold)
+            self._put(*drawing.goal, "✚", colours.good + bold)
         for name, (x, y, yaw) in drawing.others.items():
             column, row = self._put(x, y, _head(yaw), colours.node(name) + bold)
             for at, letter in enumerate(name[:12]):

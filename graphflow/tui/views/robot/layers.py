@@ -105,7 +105,7 @@ class Layers:
     def _aimed(self, message: Any) -> None:
         at = message.pose.position
         [(x, y)] = self._moved([(at.x, at.y)], message.header.frame_id) or [(0.0, 0.0)]
-        self._drawing.goal = x, y, 0.0
+        self._drawing.goal = x, y
 
     def _others(self) -> dict[str, tuple[float, float, float]]:
         """Return the other robots: frames called `NAME/base_link`, as far as they are in the same tree."""

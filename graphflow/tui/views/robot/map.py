@@ -241,7 +241,7 @@ class RobotMap(View):
         place = Pose(position=Point(x=cursor[0], y=cursor[1]), orientation=turn)
         if is_goal:
             live.publisher(PoseStamped, topic).publish(PoseStamped(header=header, pose=place))
-            self._drawing.goal = *cursor, yaw
+            self._drawing.goal = cursor
         else:
             estimate = PoseWithCovarianceStamped(header=header)
             estimate.pose.pose = place
