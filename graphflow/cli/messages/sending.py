@@ -50,9 +50,9 @@ def send(name: str, type_: Any, goal: Message, *, show_feedback: bool, timeout: 
         try:
             await client.expect_ready(timeout)
         except ServiceUnavailable as error:
-            from graphflow.cli.ros.supervised import supervised  # most goals find their server
+            from graphflow.cli.ros.supervised import with_ended  # most goals find their server
 
-            output.error("; ".join((str(error), *supervised(node.context.cache.nodes()).ended)))
+            output.error(with_ended(error, node.context.cache.nodes()))
             return exits.TIMEOUT
         reporter.report(f"Sending goal:\n{_indented(goal)}")
         try:

@@ -160,9 +160,9 @@ def call(
             try:
                 view.wait_for_service(full, min(timeout, 2.0))
             except ServiceUnavailable as error:
-                from graphflow.cli.ros.supervised import supervised  # most calls find their server
+                from graphflow.cli.ros.supervised import with_ended  # most calls find their server
 
-                output.error("; ".join((str(error), *supervised(view.cache.nodes()).ended)))
+                output.error(with_ended(error, view.cache.nodes()))
                 return exits.TIMEOUT
         actual = agree(wanted, view.service_types(full), full)
         _warn_if_shared(view, full)

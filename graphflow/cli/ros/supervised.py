@@ -72,6 +72,15 @@ def ended(rows: Iterable[NodeRow]) -> list[str]:
     return [f"{name} has ended; to start it again: graphflow start {name}" for name in names]
 
 
+def with_ended(error: Exception, seen: Collection[str]) -> str:
+    """Return the text of an error that a node is missing for, with the nodes that have ended.
+
+    Args:
+        seen: Nodes that the network shows.
+    """
+    return "; ".join((str(error), *supervised(seen).ended))
+
+
 def unseen(rows: Iterable[NodeRow], seen: Collection[str]) -> list[str]:
     """Describe nodes that are ready according to their supervisor but are not seen on the network."""
     lost = [r["node"] for r in rows if r["is_named"] and r["state"] == "ready" and r["node"] not in seen]
