@@ -11,6 +11,9 @@ ATTEMPTS = 5
 """Times that a source is parsed before its check is given up."""
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
+LOOPS = (ast.For, ast.AsyncFor, ast.While, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+REPEATING = (*LOOPS, *NESTED, ast.ClassDef)
+"""Syntax that may run the code inside it more than once, or later."""
 
 
 def walk(top: ast.AST, *, into_functions: bool = True) -> Iterator[tuple[ast.AST, list[ast.AST]]]:

@@ -29,13 +29,14 @@ def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]
     spun = next((i for i, s in enumerate(body) if _spins(s)), None)
     if spun is None:
         return
-    line = body[spun].lineno
-    yield from _destroyed(body[:spun], body[spun])
+    spin = body[spun]
+    line, node = spin.lineno, next((ast.unparse(arg) for arg in _spun(spin)), "node")
+    yield from _destroyed(body[:spun], spin)
     futures = {name for statement in body[:spun] for name in _assigned(statement)}
     for statement in body[spun + 1 :]:
         if read := next((name for name in _results(statement) if name in futures), None):
             text = f"{read}.result() runs only after Ctrl-C, since spin (line {line}) returns then"
-            yield statement.lineno, f"{text}; write rclpy.spin_until_future_complete(node, {read}) in line {line}"
+            yield statement.lineno, f"{text}; write rclpy.spin_until_future_complete({node}, {read}) in line {line}"
             return
         match statement:
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr=name) as function) as call):
@@ -76,6 +77,14 @@ def _spins(statement: ast.stmt) -> bool:
         case ast.Expr(value=ast.Call(func=ast.Attribute(value=ast.Name(id="rclpy"), attr="spin"))):
             return True
     return False
+
+
+def _spun(spin: ast.stmt) -> list[ast.expr]:
+    """Return the arguments of a spin: the node, and perhaps an executor."""
+    match spin:
+        case ast.Expr(value=ast.Call(args=arguments)):
+            return arguments
+    return []
 
 
 def _sends(node: ast.AST) -> bool:

@@ -19,9 +19,11 @@ def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
         if not _is_async(parents):
             continue
         match node:
-            case ast.Call(func=ast.Attribute(value=ast.Name("time"), attr="sleep"), args=[time]) if not _is_short(time):
+            case ast.Call(func=ast.Attribute(value=ast.Name("time"), attr="sleep"), args=[pause]) if not _is_short(
+                pause
+            ):
                 text = "time.sleep in an async def stops every handler of the process"
-                yield node.lineno, f"{text}; write await self.clock.sleep({ast.unparse(time)})"
+                yield node.lineno, f"{text}; write await self.clock.sleep({ast.unparse(pause)})"
             case ast.While(test=ast.Constant(value=True | 1)):
                 if not any(isinstance(part, _PAUSES) for part in ast.walk(node)):
                     text = "this loop never awaits, so no other handler of the process runs"
@@ -35,5 +37,5 @@ def _is_async(parents: Sequence[ast.AST]) -> bool:
     return isinstance(inner, ast.AsyncFunctionDef)
 
 
-def _is_short(time: ast.expr) -> bool:
-    return isinstance(time, ast.Constant) and isinstance(time.value, int | float) and time.value < _SHORT
+def _is_short(pause: ast.expr) -> bool:
+    return isinstance(pause, ast.Constant) and isinstance(pause.value, int | float) and pause.value < _SHORT

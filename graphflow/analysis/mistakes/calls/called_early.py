@@ -14,7 +14,7 @@ from graphflow.analysis.syntax import FunctionNode, last_name, walk
 
 _THREADS = {"Thread": 1, "Process": 1, "Timer": 1, "submit": 0, "to_thread": 0, "run_in_executor": 1}
 """Calls that run a function in a thread or process, with the position of the function among their arguments."""
-_TAKERS = {
+TAKERS = {
     "create_timer": 1,
     "create_subscription": 2,
     "create_service": 2,
@@ -69,7 +69,7 @@ def results_passed(code: ast.AST, *, is_of_threads: bool) -> Iterator[tuple[int,
         is_of_threads: Whether threads should call the function, rather than a node.
     """
     silent = _returning_nothing(code)
-    for given in _given(code, _THREADS if is_of_threads else _TAKERS):
+    for given in _given(code, _THREADS if is_of_threads else TAKERS):
         called = _function(given, silent)
         if called is not None:
             shown, name = _shown(given), ast.unparse(given.call.func)

@@ -5,10 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from graphflow.analysis.mistakes.calls.called_early import TAKERS
 from graphflow.analysis.syntax import FunctionNode, last_name
-
-_TAKERS = {"create_timer": 1, "create_subscription": 2, "create_service": 2}
-"""Methods that take a callback, with its position among their arguments."""
 
 
 def nested_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
@@ -17,7 +15,7 @@ def nested_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
     One that spins it for ever keeps its group, which is reported as it happens.
     """
     calls = [node for node in ast.walk(module) if isinstance(node, ast.Call)]
-    given = [(call, _TAKERS[last_name(call.func)]) for call in calls if last_name(call.func) in _TAKERS]
+    given = [(call, TAKERS[last_name(call.func)]) for call in calls if last_name(call.func) in TAKERS]
     callbacks = {last_name(call.args[at]) for call, at in given if len(call.args) > at}
     for method in ast.walk(module):
         if not isinstance(method, FunctionNode) or method.name not in callbacks:

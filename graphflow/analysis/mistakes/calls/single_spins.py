@@ -5,10 +5,9 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import LOOPS, FunctionNode, last_name, walk
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete", "spin_some")
-_LOOPS = (ast.For, ast.While, ast.ListComp)
 
 
 def single_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
@@ -25,7 +24,7 @@ def single_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
     inside = [parent.name for parent in parents if isinstance(parent, FunctionNode)]
     if last_name(call.func) != "spin_once" or inside not in ([], ["main"]):
         return
-    if not any(isinstance(parent, _LOOPS) for parent in parents):
+    if not any(isinstance(parent, LOOPS) for parent in parents):
         shown = ast.unparse(call.args[0]) if call.args else "node"
         text = f"{ast.unparse(call.func)} calls one callback and returns, and no timer runs after it"
         yield call.lineno, f"{text}; to run until Ctrl-C write rclpy.spin({shown})"

@@ -6,22 +6,20 @@ import ast
 from collections.abc import Iterator, Sequence
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import REPEATING, FunctionNode, last_name, walk
 
 _SENDERS = {"Transforms": "send", "TransformBroadcaster": "sendTransform"}
 """Classes that send transforms, and their methods that do."""
 _STATIC = {"send": "write {}.send_static", "sendTransform": "take a StaticTransformBroadcaster"}
 _STARTS = ("__init__", "on_start")
-_LOOPS = ast.For | ast.AsyncFor | ast.While | ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp
-_REPEATED = _LOOPS | ast.Lambda | ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
 def single_transforms(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines that send a transform of a class whose nodes send none later; each comes with its correction."""
     for definition in ast.walk(code):
         if isinstance(definition, ast.ClassDef):
-            for name, way in _senders(definition).items():
-                yield from _single(definition, name, way)
+            for name, method in _senders(definition).items():
+                yield from _single(definition, name, method)
 
 
 def _senders(definition: ast.ClassDef) -> dict[str, str]:
@@ -32,22 +30,22 @@ def _senders(definition: ast.ClassDef) -> dict[str, str]:
             case ast.Assign(
                 targets=[ast.Name(id=name) | ast.Attribute(value=ast.Name(id="self"), attr=name)],
                 value=ast.Call(func=function),
-            ) if (way := _SENDERS.get(last_name(function))) is not None:
-                found[name] = way
+            ) if (method := _SENDERS.get(last_name(function))) is not None:
+                found[name] = method
     return found
 
 
-def _single(definition: ast.ClassDef, name: str, way: str) -> Iterator[tuple[int, str]]:
+def _single(definition: ast.ClassDef, name: str, method: str) -> Iterator[tuple[int, str]]:
     uses = [(use, parents) for use, parents in walk(definition) if isinstance(use, ast.Attribute) and use.attr == name]
     uses = [(use, parents) for use, parents in uses if isinstance(use.ctx, ast.Load)]
     if not all(is_own(use) and isinstance(parents[-1], ast.Attribute) for use, parents in uses):
         return  # it is passed on, and may be used anywhere
-    sends = [(use, parents) for use, parents in uses if getattr(parents[-1], "attr", "") == way]
+    sends = [(use, parents) for use, parents in uses if getattr(parents[-1], "attr", "") == method]
     methods = {*_STARTS, *_called_at_start(definition)}
     if all(_runs_once(parents, methods) for _, parents in sends):
         for use, _ in sends:
-            text = f"{ast.unparse(use)}.{way} runs once, and its transform holds for that moment alone"
-            static = _STATIC[way].format(ast.unparse(use))
+            text = f"{ast.unparse(use)}.{method} runs once, and its transform holds for that moment alone"
+            static = _STATIC[method].format(ast.unparse(use))
             yield use.lineno, f"{text}; for one that never changes, {static}; send others again, as in a timer"
 
 
@@ -70,5 +68,5 @@ def _runs_once(parents: Sequence[ast.AST], methods: set[str]) -> bool:
     return (
         isinstance(method, FunctionNode)
         and method.name in methods
-        and not any(isinstance(node, _REPEATED) for node in inner)
+        and not any(isinstance(node, REPEATING) for node in inner)
     )

@@ -1,4 +1,4 @@
-"""Values that nothing receives: `state = "BACK"` for `self.state`, and a message that a handler returns.
+"""Values that nothing receives: `state = "BACK"` for `self.state`, and messages that are returned, or only filled.
 
 Only names that nothing reads are told, and only messages that their handler does not pass on itself.
 """

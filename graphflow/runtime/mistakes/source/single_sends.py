@@ -9,7 +9,7 @@ import ast
 from collections.abc import Sequence
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, syntax_of
+from graphflow.analysis.syntax import REPEATING, FunctionNode, syntax_of
 from graphflow.analysis.user_code import is_users_module, short_place
 from graphflow.errors import Place
 from graphflow.runtime.declarations import declared
@@ -18,8 +18,6 @@ from graphflow.runtime.mistakes.source.shadowing import definition_of
 
 _BY_NAME = {"getattr", "vars", "__dict__", "exec", "eval", "attrgetter", "methodcaller"}
 """Names in modules that may use an attribute in another way."""
-_LOOPS = ast.For | ast.AsyncFor | ast.While | ast.ListComp | ast.SetComp | ast.DictComp | ast.GeneratorExp
-_REPEATING = _LOOPS | ast.Lambda | ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
 def single_sends(node: object, publisher: object) -> list[Place]:
@@ -63,5 +61,5 @@ def _is_single(parents: Sequence[ast.AST], bodies: Sequence[ast.ClassDef], metho
         case [ast.Module(), ast.ClassDef() as body, method, *inner, ast.Call(func=call), ast.Attribute() as above]:
             is_published = call is above and above.attr == "publish"
             is_method = isinstance(method, FunctionNode) and method.name in methods and body in bodies
-            return is_published and is_method and not any(isinstance(node, _REPEATING) for node in inner)
+            return is_published and is_method and not any(isinstance(node, REPEATING) for node in inner)
     return False
