@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 
 ROUNDS = 10
-"""Timeouts that `idle` spends on all nodes together, so that silent nodes can not hold it up."""
+"""Timeouts that `idle` spends on all nodes together, so that silent nodes cannot hold it up."""
 
 _CHANGE = "lifecycle_msgs/srv/ChangeState"
 _STATE = "lifecycle_msgs/srv/GetState"

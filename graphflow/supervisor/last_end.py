@@ -18,7 +18,10 @@ LOG_BOUND = 100_000_000
 
 
 def recent_death() -> str:
-    """Return how the newest graph ended, if it was killed a short while ago in this domain; empty otherwise."""
+    """Return how the newest graph ended, if it was killed a short while ago; empty otherwise.
+
+    Of graphs that have left a run file, only those of this domain count; a log does not tell its graph's domain.
+    """
     killed = next((run for _, run in left_over() if run.domain == domain_id()), None)
     logs = Path(killed.logs) if killed is not None else latest_logs(None)
     if logs is None or time.time() - logs.stat().st_mtime > RECENT:

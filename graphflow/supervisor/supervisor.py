@@ -443,7 +443,7 @@ class Supervisor:
         while self._layers and all(self._processes[name].state is State.ENDED for name in self._layers[0]):
             self._layers.pop(0)
         if self._layers:
-            for process in map(self._processes.__getitem__, self._layers[0]):
+            for process in [self._processes[name] for name in self._layers[0]]:
                 if not process.stop_requested:
                     process.stop_requested = True
                     self._apply(process, Event.STOP)

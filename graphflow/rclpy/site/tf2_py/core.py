@@ -105,7 +105,8 @@ class BufferCore:
             with self._graphflow_lock:
                 return self._graphflow_frames.find(target, source, stamp)
         except TransformError as error:
-            self._graphflow_unknown.lookup_failed(error)
+            if self._graphflow_frames.histories:  # an empty buffer has another cause, which is reported elsewhere
+                self._graphflow_unknown.lookup_failed(error)
             raise in_words_of_tf2(error) from None
 
     def lookup_transform_full_core(

@@ -41,7 +41,7 @@ def endless_waits(cls: type, definition: ast.ClassDef, module: ast.Module) -> It
     """Find the lines of such waits in a class; each comes with the attribute and a sentence.
 
     Args:
-        cls: The class of the nodes, or a class that derives from it.
+        cls: The class that the definition makes, or one that derives from it.
         module: The file with the definition.
     """
     for line, name, text in _waits(cls, definition):

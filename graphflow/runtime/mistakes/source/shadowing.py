@@ -28,7 +28,7 @@ _OF_NODES = {
         "choose another name",
     ),
 }
-"""Read-only attributes of every node, with the alternative for each."""
+"""Attributes of every node that code must not set, with the alternative for each."""
 _PARTS = {"setter", "getter", "deleter", "overload"}
 """Decorators of functions that share a name on purpose."""
 

@@ -39,7 +39,7 @@ def test_statements_that_send(statement: str) -> None:
     ["node.destroy_node()", "node.stop_robot()", "node.report()", "rclpy.shutdown()", "print(node.count)", "move()"],
 )
 def test_statements_for_the_end(statement: str) -> None:
-    """What belongs to the end of a program is left alone."""
+    """Calls that belong to the end of a program are left alone."""
     assert list(after_spin(ast.parse(_PROGRAM.format(statement)))) == []
 
 

@@ -29,7 +29,7 @@ class Robot(Node):
 
 
 def told(body: str) -> list[str]:
-    """What is told of a class whose method `work` has this body."""
+    """Return the sentences about a class whose method `work` has this body."""
     source = HEAD + "".join(f"        {line}\n" for line in body.splitlines())
     space: dict[str, type] = {"Node": Node, "Param": Param}
     exec(source, space)

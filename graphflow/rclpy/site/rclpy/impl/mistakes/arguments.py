@@ -167,7 +167,7 @@ def _shown(value: object) -> str:
 
 
 def _check_callback(name: str, node: object, value: object) -> None:
-    """Warn of None as a callback, and refuse anything else that can not be called; ROS 2 accepts both.
+    """Warn of None as a callback, and refuse anything else that cannot be called; ROS 2 accepts both.
 
     ROS 2 fails when it calls the callback. A rate of its own has None.
 

@@ -27,7 +27,7 @@ class UnknownFrames:
         if not isinstance(error, UnknownFrame) or len(self._since) >= _FRAMES_BOUND or error.frame in self._told:
             return
         now = time.monotonic()
-        if now - self._since.setdefault(error.frame, now) < WARN_AFTER or "the known frames are" not in str(error):
+        if now - self._since.setdefault(error.frame, now) < WARN_AFTER:
             return
         self._told.add(error.frame)
         frame = users_frame(sys._getframe(1))
