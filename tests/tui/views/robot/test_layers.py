@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,6 +27,8 @@ from graphflow.qos import LATCHED
 from graphflow.testing import Graph
 from graphflow.tf import Transform, Transforms
 from graphflow.tui.panes import Content
+from graphflow.tui.views.robot import layers
+from graphflow.tui.widgets.map_canvas import RobotDrawing
 from tests.cases import slow
 from tests.tui.stage import Stage, stage
 
@@ -100,6 +103,27 @@ async def test_a_goal_that_no_node_takes(graph: Graph) -> None:
         await s.press("enter")
         await graph.settle()
         await s.until("no node subscribes to /goal_pose; graphflow run goal_driver -p frame:=map")
+
+
+class Frames:
+    """Transforms of more robots than are drawn, all at the origin."""
+
+    frames = tuple(f"r{i}/base_link" for i in range(layers.OTHERS_BOUND + 3))
+
+    def get(self, parent: str, frame: str) -> Transform:
+        return Transform.of(parent, frame)
+
+
+def test_bounds() -> None:
+    """Cells, points and robots; the cells that are left out lie between those that are drawn."""
+    drawing = RobotDrawing()
+    shown: Any = layers.Layers(None, drawing, Frames(), "")  # type: ignore[arg-type]
+    shown._planned(Path(poses=[at(1.0, 0.0)] * (layers.POINTS_BOUND + 3)))
+    shown._outlined(PolygonStamped(polygon=Polygon(points=[Point32()] * (layers.POINTS_BOUND + 3))))
+    shown._mapped(GridMap(np.full((layers.WALLS_BOUND // 100 + 1, 200), 100, np.int8), 0.1).to_msg("map"))
+    assert (len(drawing.path), len(drawing.footprint)) == (layers.POINTS_BOUND, layers.POINTS_BOUND)
+    assert layers.WALLS_BOUND // 2 < len(drawing.walls) <= layers.WALLS_BOUND
+    assert len(shown._others()) == layers.OTHERS_BOUND
 
 
 @slow
