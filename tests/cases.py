@@ -1,6 +1,6 @@
 """How many generated cases are tried: by default a few, with `--cases full` many, else N new ones.
 
-`--cases third` is for CI: as `full`, but each commit has its turn at one third of the slow tests.
+`--cases half` is for CI: as `full`, but each commit has its turn at one half of the slow tests.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ T = TypeVar("T")
 VARIABLE = "GRAPHFLOW_CASES"
 """How the option reaches test modules, which need it while they are imported."""
 _GIVEN = os.environ.get(VARIABLE, "few")
-TURN = int(os.environ.get("GRAPHFLOW_TURN", "0")) % 3
-"""The third of the slow tests that are run with `--cases third`."""
-_WANTED = "full" if _GIVEN == "third" else _GIVEN
+TURN = int(os.environ.get("GRAPHFLOW_TURN", "0")) % 2
+"""The half of the slow tests that are run with `--cases half`."""
+_WANTED = "full" if _GIVEN == "half" else _GIVEN
 
 
 def count(few: int, full: int) -> int:
@@ -77,16 +77,16 @@ def limit(number: int) -> pytest.MarkDecorator:
 slow = pytest.mark.slow
 """For a test that takes seconds and guards what seldom changes: it runs with `--cases full`."""
 NOT_NOW = pytest.mark.skip(
-    reason="one of several slow ones; --cases full tries all, and CI a third of them with each commit"
+    reason="one of several slow ones; --cases full tries all, and CI half of them with each commit"
 )
 
 
 def skip_slow(items: Sequence[pytest.Item]) -> None:
-    """Skip slow tests, all or those that have no turn."""
+    """Skip slow tests, all or the half that has no turn."""
     for item in items:
-        if item.get_closest_marker("slow") is None or (_WANTED != "few" and _GIVEN != "third"):
+        if item.get_closest_marker("slow") is None or (_WANTED != "few" and _GIVEN != "half"):
             continue
-        if _GIVEN != "third" or zlib.crc32(item.nodeid.encode()) % 3 != TURN:
+        if _GIVEN != "half" or zlib.crc32(item.nodeid.encode()) % 2 != TURN:
             item.add_marker(NOT_NOW)
 
 

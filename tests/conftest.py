@@ -43,7 +43,7 @@ PROGRAMS = PROJECT / "tests" / "programs"
 def pytest_addoption(parser: pytest.Parser) -> None:
     """`--cases`: see `tests.cases`."""
     parser.addoption(
-        "--cases", metavar="few|third|full|N", help="how many generated cases are tried; N: so many new ones"
+        "--cases", metavar="few|half|full|N", help="how many generated cases are tried; N: so many new ones"
     )
 
 
