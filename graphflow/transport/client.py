@@ -127,10 +127,15 @@ class Hearing:
     """The payloads that arrive on a key, until it is closed. A context manager."""
 
     def __init__(self, session: zenoh.Session, key: str, bound: int) -> None:
-        self.payloads: deque[bytes] = deque(maxlen=bound)
+        self._payloads: deque[bytes] = deque(maxlen=bound)
         # Direct, so that a response cannot overtake what its server has published before.
-        heard: Any = Callback(lambda sample: self.payloads.append(sample.payload.to_bytes()), indirect=False)
+        heard: Any = Callback(lambda sample: self._payloads.append(sample.payload.to_bytes()), indirect=False)
         self._subscriber: Any = session.declare_subscriber(key, heard)
+
+    def take(self) -> list[bytes]:
+        """Return the payloads that have arrived since the last call, the oldest first."""
+        # Counted first, since Zenoh's thread appends meanwhile; it may drop some of them, but never leaves fewer.
+        return [self._payloads.popleft() for _ in range(len(self._payloads))]
 
     def __enter__(self) -> Self:
         return self

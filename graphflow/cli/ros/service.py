@@ -186,11 +186,10 @@ def call(
 
 def _tell_logs(logs: Hearing, servers: set[str], *, is_empty: bool) -> None:
     """Show the warnings and errors that the servers have logged; for an empty response, they are the only reason."""
-    found = server_logs.lines(server_logs.read(logs.payloads), servers)
+    found = server_logs.lines(server_logs.read(logs.take()), servers)
     if not found and is_empty:
         time.sleep(server_logs.PATIENCE)
-        found = server_logs.lines(server_logs.read(logs.payloads), servers)
-    logs.payloads.clear()
+        found = server_logs.lines(server_logs.read(logs.take()), servers)
     for text in found:
         output.talk(text)
 
