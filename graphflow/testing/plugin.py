@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Test: TypeAlias = Callable[..., Coroutine[object, object, None]]
 
 LIMIT = 60.0
-"""Longest duration of an asynchronous test, in seconds of real time."""
+"""Longest duration of an asynchronous test, in seconds of real time, unless it is marked with its own `timeout`."""
 IDLE_LIMIT = 5.0
 """Longest idle time of a test with a manual clock, in seconds of real time."""
 IDLE = 0.02
@@ -35,6 +35,8 @@ def pytest_configure(config: pytest.Config) -> None:
     root = str(config.rootpath)
     if (config.rootpath / "nodes").is_dir() and root not in sys.path:
         sys.path.insert(0, root)
+    if not config.pluginmanager.has_plugin("timeout"):  # pytest-timeout, whose mark it is
+        config.addinivalue_line("markers", "timeout(seconds): limit the duration of a test")
 
 
 @pytest.fixture
@@ -146,7 +148,7 @@ def _limited(item: pytest.Function, test: Test) -> Test:
             )
         began = time.monotonic()
         try:
-            async with asyncio.timeout(LIMIT) as limit:
+            async with asyncio.timeout(_limit(item)) as limit:
                 watching = asyncio.create_task(_end_when_idle(limit)) if graph is not None else None
                 try:
                     await test(*args, **kwargs)
@@ -173,6 +175,11 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                 await graph.close()
 
     return limited
+
+
+def _limit(item: pytest.Function) -> float:
+    mark = item.get_closest_marker("timeout")
+    return LIMIT if mark is None else float(mark.args[0] if mark.args else mark.kwargs["timeout"])
 
 
 def _raise_forgotten(way: str = "") -> None:
@@ -259,5 +266,6 @@ def _too_long(ended: BaseException, seconds: float) -> str:
     return (
         f"the test was not done after {seconds:.0f} s{f', and waited in {where}' if where else ''}. If it waits for "
         "time, or for a node that is not there, advance the clock meanwhile: "
-        "start it with asyncio.ensure_future, then await graph.clock.advance(1.0)"
+        "start it with asyncio.ensure_future, then await graph.clock.advance(1.0). If it works that long, mark it with "
+        f"@pytest.mark.timeout({2 * seconds:.0f})"
     )

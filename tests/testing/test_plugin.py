@@ -61,9 +61,9 @@ def test_a_foreign_project_has_the_fixture(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*assert graph.nodes == []*"])
 
 
-def run(pytester: pytest.Pytester, test: str) -> pytest.RunResult:
+def run(pytester: pytest.Pytester, test: str, *options: str) -> pytest.RunResult:
     pytester.makepyfile(counter=NODE, test_it=test)
-    return pytester.runpytest_inprocess("-p", "no:cacheprovider")
+    return pytester.runpytest_inprocess("-p", "no:cacheprovider", *options)
 
 
 def test_fixtures_and_parameters_come_along(pytester: pytest.Pytester) -> None:
@@ -174,6 +174,31 @@ def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pyte
     result.stdout.fnmatch_lines(
         ["*asyncio.Event().wait()  # here*", "*TimeoutError*", "*waited in *test_it.py:4*advance the clock*"]
     )
+
+
+@pytest.mark.parametrize("plugin", ["timeout", "no:timeout"])
+def test_a_limit_of_its_own(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, plugin: str) -> None:
+    """Is that of pytest-timeout's mark, whether that is installed or not."""
+    monkeypatch.setattr("graphflow.testing.plugin.LIMIT", 0.01)
+    result = run(
+        pytester,
+        """
+        import asyncio
+        import pytest
+
+        @pytest.mark.timeout(20)
+        async def test_long(graph):
+            await asyncio.sleep(0.1)
+
+        async def test_short(graph):
+            await asyncio.sleep(0.1)
+        """,
+        "-p",
+        plugin,
+    )
+
+    result.assert_outcomes(failed=1, passed=1)
+    result.stdout.fnmatch_lines(["*was not done after*mark it with @pytest.mark.timeout(*)*"])
 
 
 @slow
