@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeGuard
 
-from graphflow.analysis.syntax import FunctionNode, is_nested, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, is_nested, last_name, nodes_in, walk
 
 Kind = Literal["assigned", "changed", "called", "part", "entered", "read", "invoked", "given"]
 _LOOKS = (
@@ -157,7 +157,7 @@ def called_back(method: FunctionNode) -> set[ast.AST]:
             uses.setdefault(node.id, []).append(is_given)
         elif isinstance(node, ast.Lambda) and is_given:
             found.add(node)
-    inner = [node for node in ast.walk(method) if isinstance(node, ast.FunctionDef) and node is not method]
+    inner = [node for node in nodes_in(method) if isinstance(node, ast.FunctionDef) and node is not method]
     return found | {function for function in inner if all(uses.get(function.name, [False]))}
 
 
@@ -176,7 +176,7 @@ def _is_for_answer(above: ast.AST, function: ast.AST) -> bool:
         case ast.Call(func=ast.Attribute(value=(ast.Name() | ast.Attribute()) as future, attr="add_done_callback")):
             name = ast.unparse(future)
             bound = [
-                n.value for n in ast.walk(function) if isinstance(n, ast.Assign) and ast.unparse(n.targets[0]) == name
+                n.value for n in nodes_in(function) if isinstance(n, ast.Assign) and ast.unparse(n.targets[0]) == name
             ]
             return bool(bound) and all(map(_asks, bound))
     return False

@@ -31,7 +31,7 @@ from graphflow.analysis.attribute_uses import (
     use_of,
 )
 from graphflow.analysis.local_messages import messages_of
-from graphflow.analysis.syntax import FunctionNode, Syntax, first_line, syntax_of, walk
+from graphflow.analysis.syntax import FunctionNode, Syntax, first_line, nodes_in, syntax_of, walk
 from graphflow.analysis.user_code import is_users_module
 
 _INTERCEPTING = {"__setattr__", "__delattr__", "__getattribute__"}
@@ -145,10 +145,10 @@ class ClassSource:
         """
         blocks = [block, *(function for name in methods for function in self.methods.get(name, []))]
         called = {
-            n.func.id for b in blocks for n in ast.walk(b) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
+            n.func.id for b in blocks for n in nodes_in(b) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)
         }
         blocks += [self._others[name] for name in called & set(self._others)]
-        return any(isinstance(node, (ast.Raise, ast.Assert)) for b in blocks[1:] for node in ast.walk(b))
+        return any(isinstance(node, (ast.Raise, ast.Assert)) for b in blocks[1:] for node in nodes_in(b))
 
     def _refuse_strangers(self, method: str, is_handler: bool, owner: str) -> None:
         for use in self.uses(method):
@@ -199,12 +199,12 @@ class ClassSource:
         for item in items:
             if not (isinstance(item, FunctionNode) and _is_of(cls, item)):
                 continue
-            for inner in ast.walk(item):
+            for inner in nodes_in(item):
                 if isinstance(inner, FunctionNode):
                     self._functions[file, first_line(inner)] = Function(inner, item.name)
             if item.name not in self.methods or item.name in continued:
                 self.methods.setdefault(item.name, []).append(item)
-                supers = (n for n in ast.walk(item) if isinstance(n, ast.Attribute) and is_super(n.value))
+                supers = (n for n in nodes_in(item) if isinstance(n, ast.Attribute) and is_super(n.value))
                 continued |= {node.attr for node in supers}
 
     def link(self) -> None:
@@ -300,7 +300,7 @@ class ClassSource:
             if root.id in syntax.fresh[function]:
                 return
             arguments = {a.arg for a in function.args.args[1:]} - {
-                n.id for n in ast.walk(function) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)
+                n.id for n in nodes_in(function) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)
             }
             if function.name in self._handlers and root.id in arguments and function is parents[0]:
                 return  # the arguments of handlers are messages, requests and responses

@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Literal
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 from graphflow.errors import Place
 from graphflow.graph.checks.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
@@ -314,7 +314,7 @@ class _Source:
         files = dict.fromkeys([interface.place.file, *(h.place.file for h in interface.handlers)])
         classes: dict[str, tuple[str, ast.ClassDef]] = {}
         for file in files:
-            for node in ast.walk(_module(file)):
+            for node in nodes_in(_module(file)):
                 if isinstance(node, ast.ClassDef):
                     classes.setdefault(node.name, (file, node))
         self._methods: dict[str, tuple[str, FunctionNode]] = {}
@@ -367,11 +367,11 @@ class _Source:
         if method not in self._methods or method in seen:
             return
         file, function = self._methods[method]
-        for node in ast.walk(function):
+        for node in nodes_in(function):
             if isinstance(node, ast.Call) and is_own(node.func):
                 yield from self.lost_sight_of(node.func.attr, clients, seen | {method})
             is_task = isinstance(node, ast.Call) and last_name(node.func) in _TASK_MAKERS
-            for child in ast.walk(node) if is_task else ():
+            for child in nodes_in(node) if is_task else ():
                 if is_own(child) and child.attr in clients:
                     yield Place(file, child.lineno), f"uses self.{child.attr} in a task, whose end is not followed"
             for value in _passed_on(node):
@@ -413,12 +413,12 @@ def _released(function: ast.AST) -> set[ast.AST]:
     """Return the nodes inside `async with self.group.released()`."""
     blocks = [
         node
-        for node in ast.walk(function)
+        for node in nodes_in(function)
         if isinstance(node, ast.AsyncWith)
         for item in node.items
         if isinstance(item.context_expr, ast.Call) and last_name(item.context_expr.func) == "released"
     ]
-    return {node for block in blocks for statement in block.body for node in ast.walk(statement)}
+    return {node for block in blocks for statement in block.body for node in nodes_in(statement)}
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator
 
-from graphflow.analysis.syntax import FunctionNode, last_name, parsed, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, parsed, walk
 from graphflow.analysis.uncalled import uncalled
 
 
@@ -35,7 +35,7 @@ def discarded(source: str, file: str, classes: Collection[str]) -> str:
 
 def _unused(module: ast.Module) -> Iterator[ast.Call]:
     """Yield the calls whose result nothing uses: the last statement of a block, or the value of a name never read."""
-    read = {node.id for node in ast.walk(module) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    read = {node.id for node in nodes_in(module) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
     for node, parents in walk(module):
         if any(isinstance(parent, ast.ClassDef) for parent in parents):
             continue
@@ -55,6 +55,6 @@ def _goes_on(module: ast.Module, line: int) -> bool:
     """Whether a program prints or asserts something after a line: it may only have tried whether a node can be made."""
     return any(
         isinstance(node, ast.Assert) or (isinstance(node, ast.Call) and last_name(node.func) == "print")
-        for node in ast.walk(module)
+        for node in nodes_in(module)
         if isinstance(node, (ast.Assert, ast.Call)) and node.lineno > line
     )

@@ -10,7 +10,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import ModuleType
 
-from graphflow.analysis.syntax import parsed
+from graphflow.analysis.syntax import nodes_in, parsed
 from graphflow.analysis.user_code import is_installed, is_users
 from graphflow.msgs import registry
 from graphflow.msgs.registry import KINDS
@@ -52,8 +52,8 @@ def hides_what_it_imports(file: Path) -> bool:
         module = parsed(found_text(file, "replace"))
     except (OSError, SyntaxError, ValueError):
         return False  # running the file reports the error
-    imported = {alias.name for node in ast.walk(module) if isinstance(node, ast.Import) for alias in node.names}
-    imported |= {n.module for n in ast.walk(module) if isinstance(n, ast.ImportFrom) and n.module and not n.level}
+    imported = {alias.name for node in nodes_in(module) if isinstance(node, ast.Import) for alias in node.names}
+    imported |= {n.module for n in nodes_in(module) if isinstance(n, ast.ImportFrom) and n.module and not n.level}
     return name in {other.partition(".")[0] for other in imported}
 
 

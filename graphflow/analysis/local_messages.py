@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Mapping
 
+from graphflow.analysis.syntax import nodes_in
 from graphflow.msgs.base import Message
 
 CONTAINER_MAKERS = {"list", "dict", "set", "deque", "defaultdict", "sorted", "Counter"}
@@ -28,7 +29,7 @@ def messages() -> tuple[type, ...]:
 def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: Mapping[str, object]) -> set[str]:
     """Return the local names of messages: each binding creates a message, or is annotated with a message class."""
     bound: dict[str, list[ast.expr | None]] = {}
-    for node in ast.walk(function):
+    for node in nodes_in(function):
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=made)):
                 bound.setdefault(name, []).append(made)
@@ -39,7 +40,7 @@ def messages_of(function: ast.FunctionDef | ast.AsyncFunctionDef, globals_: Mapp
     # The target of an assignment is counted twice: with the class at the assignment, and with None as a name.
     made_here = {name: [v for v in values if v is not None] for name, values in bound.items()}
     stored = {name: sum(v is None for v in values) for name, values in bound.items()}
-    arguments = {a.arg for a in ast.walk(function.args) if isinstance(a, ast.arg)}
+    arguments = {a.arg for a in nodes_in(function.args) if isinstance(a, ast.arg)}
     return {
         name
         for name, values in made_here.items()

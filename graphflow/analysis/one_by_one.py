@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import PurePath
 from types import FrameType
 
-from graphflow.analysis.syntax import parsed
+from graphflow.analysis.syntax import nodes_in, parsed
 from graphflow.errors import Place
 
 _CALL = re.compile(r"\brun\(")
@@ -49,7 +49,7 @@ def one_by_one(frame: FrameType | None) -> str:
 
 def _blocks(module: ast.Module) -> Iterator[tuple[ast.AST, list[ast.stmt]]]:
     """Yield the lists of statements of a module, each with the node that it belongs to."""
-    for node in ast.walk(module):
+    for node in nodes_in(module):
         for _, block in ast.iter_fields(node):
             if isinstance(block, list) and any(isinstance(item, ast.stmt) for item in block):
                 yield node, block

@@ -20,7 +20,7 @@ from typing import NamedTuple
 from graphflow.analysis.deadlock_check import Finding, Grade
 from graphflow.analysis.rclpy_flags import Polled, changers, polled, written_from_outside
 from graphflow.analysis.rclpy_futures import SPINS, dotted, futures_of, polled_futures
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 from graphflow.errors import Place
 from graphflow.reading import found_text
 
@@ -242,7 +242,7 @@ class _Class:
 
     def _loop_waits(self, loop: ast.While, scope: _Scope, is_sure: bool) -> Iterator[_Wait]:
         """Yield the wait of a loop that polls a future or attributes."""
-        spins = any(_calls(inner) in SPINS for inner in ast.walk(loop))
+        spins = any(_calls(inner) in SPINS for inner in nodes_in(loop))
         for owner in polled_futures(loop.test):
             if (future := dotted(owner)) in scope.futures:
                 what = f"`while not {future}.done()`"
@@ -251,7 +251,7 @@ class _Class:
         poll = None if isinstance(scope.function, ast.AsyncFunctionDef) else polled(loop, self.methods)
         is_of_rate = any(
             isinstance(n, ast.Attribute) and n.attr == "sleep" and dotted(n.value) in scope.rates
-            for n in ast.walk(loop)
+            for n in nodes_in(loop)
         )
         if poll is not None and not (self.is_single and is_of_rate):  # the wait for the rate is a finding of its own
             yield _Wait(poll.text, loop.lineno, "", True, spins, False, poll)
@@ -298,13 +298,13 @@ def files_in(path: Path) -> Iterator[Path]:
 
 def _classes(tree: ast.Module, file: str) -> Iterator[_Class]:
     """Yield the node classes of a file, each with its callbacks, clients and servers."""
-    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    names |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    imported = [alias for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for alias in node.names]
+    names = {node.id for node in nodes_in(tree) if isinstance(node, ast.Name)}
+    names |= {node.attr for node in nodes_in(tree) if isinstance(node, ast.Attribute)}
+    imported = [alias for node in nodes_in(tree) if isinstance(node, ast.ImportFrom) for alias in node.names]
     names |= {alias.name for alias in imported if alias.asname in names}
     others = {name for name in names if name.endswith("Executor")} - _OF_ONE_THREAD
     is_single = not others and bool({"spin", "SingleThreadedExecutor"} & names)
-    servers = Counter(_name_of(n) for n in ast.walk(tree) if isinstance(n, ast.Call) and last_name(n.func) in _SERVERS)
+    servers = Counter(_name_of(n) for n in nodes_in(tree) if isinstance(n, ast.Call) and last_name(n.func) in _SERVERS)
     doubled = frozenset(name for name, count in servers.items() if count > 1)
     known: dict[str, _Class] = {base: _Class(file, is_single, doubled, written_from_outside(tree)) for base in _BASES}
     for definition in tree.body:
@@ -332,7 +332,7 @@ def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
     )
     found.methods |= {item.name: item for item in definition.body if isinstance(item, FunctionNode)}
     _read_assignments(found, definition)
-    for call in ast.walk(definition):
+    for call in nodes_in(definition):
         if isinstance(call, ast.Call) and last_name(call.func) in _CALLBACK_AT:
             _read_callback(found, call)
     return found
@@ -340,7 +340,7 @@ def _read(definition: ast.ClassDef, parent: _Class) -> _Class:
 
 def _read_assignments(found: _Class, definition: ast.ClassDef) -> None:
     """Add the groups and clients that a class assigns; groups first, since clients refer to them."""
-    assigned = [n for n in ast.walk(definition) if isinstance(n, ast.Assign) and len(n.targets) == 1]
+    assigned = [n for n in nodes_in(definition) if isinstance(n, ast.Assign) and len(n.targets) == 1]
     for node in assigned:
         group = _new_group(node.value, dotted(node.targets[0]))
         if group is not None:
@@ -398,7 +398,7 @@ def _argument(call: ast.Call, at: int, *names: str) -> ast.expr | None:
 def _made_by(tree: ast.AST, maker: str) -> set[str]:
     """Return the names of objects that a function creates, attributes with their `self.`."""
     found = set()
-    for node in ast.walk(tree):
+    for node in nodes_in(tree):
         match node:
             case ast.Assign(targets=[target], value=ast.Call(func=function)) if last_name(function) == maker:
                 found.add(dotted(target))

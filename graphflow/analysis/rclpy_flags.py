@@ -9,7 +9,7 @@ import ast
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 Methods = Mapping[str, FunctionNode]
 """The methods of a class, by name."""
@@ -55,7 +55,7 @@ def polled(loop: ast.While, methods: Methods) -> Polled | None:
         isinstance(node, (ast.Break, ast.Return, ast.Raise))
         for statement in loop.body
         if not (isinstance(statement, ast.If) and "ok()" in ast.unparse(statement.test))
-        for node in ast.walk(statement)
+        for node in nodes_in(statement)
     )
     text = f"`while {ast.unparse(loop.test)}`"
     flags = _read(loop.test, methods, set())
@@ -85,7 +85,7 @@ def written_from_outside(tree: ast.Module) -> frozenset[str]:
     """Return the attributes that code assigns on something other than `self`."""
     return frozenset(
         node.attr
-        for node in ast.walk(tree)
+        for node in nodes_in(tree)
         if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load) and not _root(node)
     )
 
@@ -137,7 +137,7 @@ def _read(test: ast.AST, methods: Methods, seen: set[str]) -> set[str] | None:
 
 def _changes(top: ast.AST, flag: str) -> bool:
     """Whether code assigns an attribute of the node, or a part of it, or calls a method that may change it."""
-    for node in ast.walk(top):
+    for node in nodes_in(top):
         match node:
             case ast.Attribute(ctx=ast.Store() | ast.Del()) | ast.Subscript(ctx=ast.Store() | ast.Del()):
                 if _root(node) == flag:
@@ -159,7 +159,7 @@ def _root(expression: ast.expr) -> str:
 
 def _is_given(name: str, methods: Methods) -> bool:
     """Whether an attribute or method of the node is passed to code that may do more with it than call it back."""
-    for node in (node for function in methods.values() for node in ast.walk(function)):
+    for node in (node for function in methods.values() for node in nodes_in(function)):
         if not isinstance(node, ast.Call):
             continue
         called = last_name(node.func)
@@ -172,18 +172,18 @@ def _is_given(name: str, methods: Methods) -> bool:
 
 
 def _calls(function: ast.AST, name: str) -> bool:
-    return any(isinstance(n, ast.Call) and ast.unparse(n.func) == f"self.{name}" for n in ast.walk(function))
+    return any(isinstance(n, ast.Call) and ast.unparse(n.func) == f"self.{name}" for n in nodes_in(function))
 
 
 def _follows_an_answer(name: str, methods: Methods) -> bool:
     return any(
         last_name(n.func) == "add_done_callback" and f"self.{name}" in map(ast.unparse, n.args)
         for function in methods.values()
-        for n in ast.walk(function)
+        for n in nodes_in(function)
         if isinstance(n, ast.Call)
     )
 
 
 def _inside(tops: Sequence[ast.AST]) -> Iterator[ast.AST]:
     for top in tops:
-        yield from ast.walk(top)
+        yield from nodes_in(top)

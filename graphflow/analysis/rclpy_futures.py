@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Container, Iterator
 
-from graphflow.analysis.syntax import is_nested, last_name, walk
+from graphflow.analysis.syntax import is_nested, last_name, nodes_in, walk
 
 SPINS = ("rclpy.spin_until_future_complete", "rclpy.spin_once", "rclpy.spin")
 """Functions that spin a node until a future is done, or for a while."""
@@ -18,7 +18,7 @@ _LOOKS = ("spin_until_future_complete", "spin_once_until_future_complete", "prin
 def futures_of(function: ast.AST, clients: Container[str]) -> dict[str, str]:
     """Return the names of futures that a function gets from clients, each with the client."""
     found = {}
-    for node in ast.walk(function):
+    for node in nodes_in(function):
         match node:
             case ast.Assign(
                 targets=[target],
@@ -50,7 +50,7 @@ def _is_known_elsewhere(future: str, function: ast.AST) -> bool:
 
 def polled_futures(test: ast.expr) -> Iterator[ast.expr]:
     """Yield the owners in a condition with `not owner.done()`."""
-    for node in ast.walk(test):
+    for node in nodes_in(test):
         match node:
             case ast.UnaryOp(op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=owner, attr="done"))):
                 yield owner
@@ -63,7 +63,7 @@ def dotted(expression: ast.expr) -> str:
 
 def early_questions(module: ast.AST) -> Iterator[tuple[int, str]]:
     """Find lines that ask whether a future is done right after the call that made it: nothing has spun in between."""
-    for node in ast.walk(module):
+    for node in nodes_in(module):
         body = node.body if isinstance(node, BLOCKS) else []
         for first, second in zip(body, body[1:], strict=False):
             match first, second:

@@ -15,7 +15,7 @@ from types import FunctionType
 from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import first_line, last_name, syntax_of
+from graphflow.analysis.syntax import first_line, last_name, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import ParameterError, Place
 from graphflow.interface import EndpointInfo, EndpointKind, HandlerInfo, HandlerKind, Interface, Parameter, type_of
@@ -73,7 +73,7 @@ class _Made:
         syntax = _syntax(function)
         if syntax is None:
             return
-        for node in ast.walk(syntax):
+        for node in nodes_in(syntax):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
                 if function.__name__ == "__init__" and node.func.attr == "__init__":
                     self._read_name(node, function)
@@ -213,6 +213,6 @@ def _kept_as(call: ast.Call, function: ast.AST) -> str:
 
 
 def _assignments(function: ast.AST) -> Iterator[ast.Assign | ast.AnnAssign]:
-    for node in ast.walk(function):
+    for node in nodes_in(function):
         if isinstance(node, (ast.Assign, ast.AnnAssign)):
             yield node

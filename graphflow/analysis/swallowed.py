@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Iterator
 from types import CodeType
 
-from graphflow.analysis.syntax import FunctionNode, first_line, last_name, syntax_of
+from graphflow.analysis.syntax import FunctionNode, first_line, last_name, nodes_in, syntax_of
 from graphflow.analysis.user_code import short_place
 from graphflow.errors import Place
 
@@ -35,9 +35,9 @@ def _swallowing(code: CodeType | None) -> list[Place]:
 
 
 def _lines(function: ast.AST) -> Iterator[int]:
-    for node in ast.walk(function):
+    for node in nodes_in(function):
         if isinstance(node, ast.ExceptHandler):
-            if catching(node) and not any(isinstance(inner, ast.Raise) for inner in ast.walk(node)):
+            if catching(node) and not any(isinstance(inner, ast.Raise) for inner in nodes_in(node)):
                 yield node.lineno
         elif isinstance(node, ast.Call) and last_name(node.func) == "suppress" and any(map(_catches, node.args)):
             yield node.lineno
@@ -59,7 +59,7 @@ def caught_in_vain(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
         decorators = {last_name(d.func if isinstance(d, ast.Call) else d) for d in method.decorator_list}
         if decorators & {"staticmethod", "classmethod"} or not (decorators or isinstance(method, ast.AsyncFunctionDef)):
             continue  # it may be called before the event loop runs, where Ctrl-C does raise
-        for node in ast.walk(method):
+        for node in nodes_in(method):
             if isinstance(node, ast.ExceptHandler) and node.type is not None and last_name(node.type) == _INTERRUPT:
                 works = [s for s in node.body if not isinstance(s, (ast.Raise, ast.Pass))]
                 text = f"{_INTERRUPT} does not come to a node, which Ctrl-C cancels: {_INSTEAD}"

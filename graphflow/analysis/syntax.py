@@ -16,6 +16,26 @@ REPEATING = (*LOOPS, *NESTED, ast.ClassDef)
 """Syntax that may run the code inside it more than once, or later."""
 
 
+_CHILDREN = "_graphflow_children"
+"""Attribute of a node with the nodes directly below it: dozens of checks ask for those of the same tree."""
+
+
+def children_of(node: ast.AST) -> tuple[ast.AST, ...]:
+    """Return the nodes directly below a node, in source order."""
+    known: tuple[ast.AST, ...] | None = node.__dict__.get(_CHILDREN)
+    if known is None:
+        known = node.__dict__[_CHILDREN] = (*ast.iter_child_nodes(node),)
+    return known
+
+
+def nodes_in(top: ast.AST) -> list[ast.AST]:
+    """Return a node and all nodes below it, breadth first."""
+    found = [top]
+    for node in found:  # it grows meanwhile
+        found += children_of(node)
+    return found
+
+
 def walk(top: ast.AST, *, into_functions: bool = True) -> Iterator[tuple[ast.AST, list[ast.AST]]]:
     """Yield a node and all nodes below it in source order, each with the nodes that enclose it, the outermost first.
 
@@ -29,7 +49,7 @@ def walk(top: ast.AST, *, into_functions: bool = True) -> Iterator[tuple[ast.AST
         if into_functions or not parents or not isinstance(node, NESTED):
             around = [*parents, node]
             # Reversed, since the last one added is taken first.
-            todo += [(child, around) for child in reversed([*ast.iter_child_nodes(node)])]
+            todo += [(child, around) for child in reversed(children_of(node))]
 
 
 def is_nested(parents: Sequence[ast.AST]) -> bool:
@@ -98,7 +118,7 @@ class Syntax:
 
 
 def _function_lines(definition: ast.ClassDef) -> Iterator[int]:
-    for node in ast.walk(definition):
+    for node in nodes_in(definition):
         if isinstance(node, FunctionNode):
             yield first_line(node)
         elif isinstance(node, ast.Lambda):

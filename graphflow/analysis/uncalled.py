@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator, Sequence
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name, parsed, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, parsed, walk
 
 _RUNNERS = ("run", "running", "init", "spin")
 """Names of functions by which a program runs nodes."""
@@ -42,10 +42,10 @@ def uncalled(source: str, file: str) -> str:
         return ""
     for line, text in misspelt_main(module):
         return f"{file}:{line}: {text}"
-    statements = {id(node.value): node.lineno for node in ast.walk(module) if isinstance(node, ast.Expr)}
-    names = [node for node in ast.walk(module) if isinstance(node, ast.Name)]
+    statements = {id(node.value): node.lineno for node in nodes_in(module) if isinstance(node, ast.Expr)}
+    names = [node for node in nodes_in(module) if isinstance(node, ast.Name)]
     used = {name.id for name in names if id(name) not in statements}
-    used |= {node.value for node in ast.walk(module) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    used |= {node.value for node in nodes_in(module) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     functions = [node for node in module.body if isinstance(node, FunctionNode) and not node.decorator_list]
     idle = [function for function in functions if function.name not in used]  # a decorator may keep and call it
     for function in idle:
@@ -138,9 +138,9 @@ def _asks(method: ast.Attribute) -> bool:
 def _own_attributes(code: ast.AST) -> set[str]:
     """Return the attributes that a program sets, or defines as properties."""
     found = {
-        node.attr for node in ast.walk(code) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
+        node.attr for node in nodes_in(code) if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
     }
-    for node in ast.walk(code):
+    for node in nodes_in(code):
         if isinstance(node, FunctionNode) and node.decorator_list:
             found.add(node.name)
     return found
@@ -158,5 +158,5 @@ def misspelt_main(module: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def _runs_nodes(function: ast.AST) -> bool:
-    called = [node.func for node in ast.walk(function) if isinstance(node, ast.Call)]
+    called = [node.func for node in nodes_in(function) if isinstance(node, ast.Call)]
     return any(last_name(f) in _RUNNERS for f in called)

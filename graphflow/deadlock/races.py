@@ -27,7 +27,7 @@ from types import FrameType
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
-from graphflow.analysis.syntax import parsed
+from graphflow.analysis.syntax import children_of, nodes_in, parsed
 from graphflow.deadlock.asyncio_frames import TaskLike
 from graphflow.errors import Place
 from graphflow.executor.runner import Run
@@ -196,7 +196,7 @@ def _uses(expression: ast.AST, name: str, derived: set[str]) -> bool:
     return any(
         (isinstance(n, ast.Attribute) and n.attr == name and isinstance(n.value, ast.Name) and n.value.id == "self")
         or (isinstance(n, ast.Name) and n.id in derived)
-        for n in ast.walk(expression)
+        for n in nodes_in(expression)
     )
 
 
@@ -206,10 +206,10 @@ def _derived(function: ast.AST, name: str) -> set[str]:
     while True:
         more = {
             target.id
-            for node in ast.walk(function)
+            for node in nodes_in(function)
             if isinstance(node, ast.Assign) and _uses(node.value, name, found)
             for whole in node.targets
-            for target in ast.walk(whole)
+            for target in nodes_in(whole)
             if isinstance(target, ast.Name)
         } - {"self"}
         if more <= found:
@@ -224,7 +224,7 @@ def _statements(function: ast.AST) -> Iterator[tuple[ast.AST, tuple[ast.expr, ..
         node, guards = todo.pop()
         yield node, guards
         inner = (*guards, node.test) if isinstance(node, (ast.If, ast.While)) else guards
-        todo += [(child, inner) for child in ast.iter_child_nodes(node)]
+        todo += [(child, inner) for child in children_of(node)]
 
 
 @cache
@@ -233,7 +233,7 @@ def _function(file: str, line: int) -> ast.AST | None:
         module = parsed(found_text(Path(file)))
     except (OSError, SyntaxError, ValueError):
         return None
-    for node in ast.walk(module):
+    for node in nodes_in(module):
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
             first = node.decorator_list[0].lineno if node.decorator_list else node.lineno
             if first == line:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.analysis.syntax import first_line, is_nested, parsed, syntax_of, walk
+from graphflow.analysis.syntax import children_of, first_line, is_nested, nodes_in, parsed, syntax_of, walk
 
 TEXT = """
 import asyncio as aio, os
@@ -32,6 +32,14 @@ def test_walking_a_tree() -> None:
     assert ("Attribute", ["Module", "Expr"]) in found
     assert ("Name", ["Module", "Expr", "Attribute"]) in found
     assert len(found) == len(list(ast.walk(tree)))
+
+
+def test_nodes_below() -> None:
+    """In the order of `ast.walk`, each time they are asked for."""
+    tree = ast.parse("def f(a):\n    return [g(a) for a in range(2)]\n")
+    for _ in range(2):
+        assert nodes_in(tree) == list(ast.walk(tree))
+        assert children_of(tree.body[0]) == (*ast.iter_child_nodes(tree.body[0]),)
 
 
 @pytest.fixture

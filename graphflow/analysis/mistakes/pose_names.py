@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import cache
 
 from graphflow.analysis.bindings import Bindings, bindings_of
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 _LIBRARIES = ("math", "np", "numpy")
 DEPTH = 4
@@ -24,7 +24,7 @@ class PoseNames:
         self.poses: set[str] = set()
         """Names of turtlesim's Pose."""
         has_own_theta = False
-        for node in ast.walk(module):
+        for node in nodes_in(module):
             match node:
                 case ast.ImportFrom(module=str(path), names=names) if path in _LIBRARIES:
                     self.functions |= {alias.name for alias in names if alias.asname is None}
@@ -36,7 +36,7 @@ class PoseNames:
             self.poses = set()  # somebody may keep degrees there
         self.callbacks: set[str] = set()
         """Methods that are passed to `create_subscription` for such poses."""
-        for node in ast.walk(module) if self.poses else ():
+        for node in nodes_in(module) if self.poses else ():
             match node:
                 case ast.Call(func=ast.Attribute(attr="create_subscription"), args=[type_, _, callback, *_]):
                     self.callbacks |= {last_name(callback)} if last_name(type_) in self.poses else set()

@@ -16,7 +16,7 @@ from graphflow.analysis.attribute_uses import looks
 from graphflow.analysis.class_source import ClassSource, Unknown, source_of
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.local_messages import messages
-from graphflow.analysis.syntax import FunctionNode, walk
+from graphflow.analysis.syntax import FunctionNode, children_of, nodes_in, walk
 from graphflow.analysis.user_code import is_users_module, is_users_object
 from graphflow.deadlock.asyncio_frames import AnyFuture
 from graphflow.deadlock.closed_world.loops import Loop
@@ -85,7 +85,7 @@ class Conditions:
                 raise Unknown
 
     def _read_parts(self, node: ast.AST, scope: Scope, seen: frozenset[str]) -> None:
-        for child in ast.iter_child_nodes(node):
+        for child in children_of(node):
             if isinstance(child, ast.expr):  # others are operators and contexts
                 self.read(child, scope, seen)
 
@@ -133,7 +133,7 @@ class Conditions:
         self, element: ast.expr, loops: list[ast.comprehension], scope: Scope, seen: frozenset[str]
     ) -> None:
         for loop in loops:
-            bound = {node.id for node in ast.walk(loop.target) if isinstance(node, ast.Name)}
+            bound = {node.id for node in nodes_in(loop.target) if isinstance(node, ast.Name)}
             match loop:
                 case ast.comprehension(target=ast.Name(id=each), iter=ast.Name(id=name)) if scope.tasks.get(name):
                     scope = scope._replace(tasks={**scope.tasks, each: scope.tasks[name]})
@@ -222,12 +222,12 @@ class LoopConditions(Conditions):
         self._loop = loop
         self._owned: dict[str, Conditions] = {}
         """By attribute: the conditions of the object in it."""
-        inside = set(ast.walk(loop))
+        inside = set(nodes_in(loop))
         code, values = frame.f_code, frame.f_locals
         bound = bindings(function)
         given = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
         own = [name for name in code.co_varnames if name not in code.co_cellvars]  # no inner function can bind these
-        condition = set(ast.walk(loop.test)) if isinstance(loop, ast.While) else set()
+        condition = set(nodes_in(loop.test)) if isinstance(loop, ast.While) else set()
         changing = {
             name
             for name in own

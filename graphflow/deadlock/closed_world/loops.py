@@ -9,7 +9,7 @@ from functools import cached_property
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.class_source import Function
 from graphflow.analysis.frames import Frame
-from graphflow.analysis.syntax import first_line, syntax_of
+from graphflow.analysis.syntax import first_line, nodes_in, syntax_of
 from graphflow.analysis.user_code import Pause
 
 Loop = ast.While | ast.For | ast.AsyncFor
@@ -26,7 +26,7 @@ class Spot:
     def loops(self) -> list[Loop]:
         """Loops around the frame's line, the outermost first."""
         around = (ast.While, ast.AsyncFor, ast.For)
-        nodes = ast.walk(self.function.syntax)  # breadth first, hence the outer before the inner
+        nodes = nodes_in(self.function.syntax)  # breadth first, hence the outer before the inner
         return [node for node in nodes if isinstance(node, around) and _spans(node, self.frame.f_lineno)]
 
 
@@ -43,7 +43,7 @@ def may_poll(loop: Loop) -> bool:
 
 def pause_of(loop: Loop, frame: Frame) -> Pause | None:
     """Return the line at which a loop pauses; None if there are several."""
-    calls = [node for node in ast.walk(loop) if isinstance(node, ast.Call)]
+    calls = [node for node in nodes_in(loop) if isinstance(node, ast.Call)]
     lines = {call.lineno for call in calls if ast.unparse(call.func).split(".")[-1] == "sleep"}
     return Pause(frame, lines.pop()) if len(lines) == 1 else None
 
@@ -61,7 +61,7 @@ def only_pauses(frame: Frame) -> bool:
         return False
     code = frame.f_code
     found = [f for f in functions if (first_line(f), f.name) == (code.co_firstlineno, code.co_name)]
-    return len(found) == 1 and all(map(_lets_time_pass, ast.walk(found[0])))
+    return len(found) == 1 and all(map(_lets_time_pass, nodes_in(found[0])))
 
 
 def _lets_time_pass(node: ast.AST) -> bool:
@@ -71,7 +71,7 @@ def _lets_time_pass(node: ast.AST) -> bool:
         case ast.Attribute(ctx=ast.Store()):
             return is_own(node)
         case ast.While():  # a loop that pauses is a polling loop, the very thing that waits
-            return not any(isinstance(n, ast.Call) and _last(n.func) == "sleep" for n in ast.walk(node))
+            return not any(isinstance(n, ast.Call) and _last(n.func) == "sleep" for n in nodes_in(node))
         case ast.Subscript(ctx=ast.Store()) | ast.Raise() | ast.Assert() | ast.Global() | ast.Nonlocal():
             return False
         case ast.Yield() | ast.YieldFrom() | ast.Delete() | ast.AsyncFor() | ast.AsyncWith():

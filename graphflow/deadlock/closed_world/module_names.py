@@ -14,7 +14,7 @@ from types import ModuleType
 from graphflow.analysis.attribute_uses import Use, use_of
 from graphflow.analysis.class_source import ClassSource, Unknown
 from graphflow.analysis.local_messages import CONTAINER_MAKERS, is_new
-from graphflow.analysis.syntax import FunctionNode, is_nested, syntax_of, walk
+from graphflow.analysis.syntax import FunctionNode, is_nested, nodes_in, syntax_of, walk
 from graphflow.analysis.user_code import is_users_module
 from graphflow.deadlock.closed_world.values import LOOKING, VIEWLESS, arrays
 
@@ -73,7 +73,7 @@ def _may_import(module: str) -> bool:
 
 def _has_its_own(function: FunctionNode | ast.Lambda, name: str) -> bool:
     """Whether a name is local to a function."""
-    given = [node.arg for node in ast.walk(function.args) if isinstance(node, ast.arg)]
+    given = [node.arg for node in nodes_in(function.args) if isinstance(node, ast.arg)]
     if name in given:
         return True
     nodes = [node for node, parents in walk(function) if not is_nested(parents)]  # inner functions have their own scope

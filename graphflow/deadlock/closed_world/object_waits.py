@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from graphflow.analysis.attribute_uses import Use
 from graphflow.analysis.class_source import ClassSource, Unknown, source_of
 from graphflow.analysis.frames import Frame
+from graphflow.analysis.syntax import nodes_in
 from graphflow.analysis.user_code import is_users, is_users_module, is_users_object
 from graphflow.deadlock.asyncio_frames import is_inside, object_wait
 from graphflow.deadlock.closed_world.loops import Loop, is_library, only_pauses
@@ -107,7 +108,7 @@ class OwnedQuestion(Question):
         Raises:
             Unknown: Something else does, or the loop itself.
         """
-        source, inside = source_of(self._node.instance), set(ast.walk(loop))
+        source, inside = source_of(self._node.instance), set(nodes_in(loop))
         own = [use for use in source.uses(self.owner) if use.syntax in inside or use.method in below]
         run = {name for use in own if use.name in self._source.methods for name in self._source.below(use.name)}
         changing = {use.method for name in names for use in self._changes(name)}
@@ -160,7 +161,7 @@ class OwnedQuestion(Question):
 
     def _ends(self, use: Use, source: ClassSource) -> bool:
         """Whether a method of the node does something to a part of the object that can end the wait."""
-        nodes = [n for function in source.methods.get(use.method, []) for n in ast.walk(function)]
+        nodes = [n for function in source.methods.get(use.method, []) for n in nodes_in(function)]
         parts = {n for n in nodes if isinstance(n, ast.Attribute) and n.value is use.syntax}
         called = {n.attr for n in nodes if isinstance(n, ast.Attribute) and n.value in parts}
         value = getattr(self._instance, use.name, None)

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 
 from graphflow.analysis.class_source import Unknown, source_of
+from graphflow.analysis.syntax import children_of
 from graphflow.deadlock.closed_world.wakers import entries_of, handlers_above
 from graphflow.deadlock.protocols import ProcessContext, Subject
 from graphflow.machines.cache import GraphCache
@@ -106,4 +107,4 @@ def _constants(code: ast.AST) -> Iterator[str]:
             case ast.Constant(value=str(text)):
                 yield text
             case node:
-                todo += ast.iter_child_nodes(node)
+                todo += children_of(node)

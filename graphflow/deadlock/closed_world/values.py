@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 
 from graphflow.analysis.attribute_uses import Use, is_own
 from graphflow.analysis.local_messages import messages
-from graphflow.analysis.syntax import FunctionNode
+from graphflow.analysis.syntax import FunctionNode, nodes_in
 from graphflow.deadlock.asyncio_frames import FUTURE, AnyFuture
 
 _QUEUE = ("put", "put_nowait", "get", "get_nowait")
@@ -124,7 +124,7 @@ NO_NAMES = Scope({}, frozenset(), {}, set())
 def bindings(function: FunctionNode) -> dict[str, list[tuple[ast.AST, ast.expr | None]]]:
     """Return the bindings of a function's local names: the place of each, and the expression, if it has one."""
     found: dict[str, list[tuple[ast.AST, ast.expr | None]]] = {}
-    for node in ast.walk(function):
+    for node in nodes_in(function):
         for name, place, value in _bindings_at(node):
             found.setdefault(name, []).append((place, value))
     return found
@@ -210,5 +210,5 @@ def sets_fields(function: FunctionNode) -> bool:
     """Whether a function sets a field of something other than the node."""
     return any(
         isinstance(n, (ast.Attribute, ast.Subscript)) and isinstance(n.ctx, (ast.Store, ast.Del)) and not is_own(n)
-        for n in ast.walk(function)
+        for n in nodes_in(function)
     )

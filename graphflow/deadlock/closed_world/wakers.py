@@ -22,7 +22,7 @@ from graphflow.analysis.attribute_uses import Use, is_own
 from graphflow.analysis.class_source import LAMBDA, Unknown, source_of
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.local_messages import CONTAINER_MAKERS, is_new, messages
-from graphflow.analysis.syntax import is_nested, walk
+from graphflow.analysis.syntax import is_nested, nodes_in, walk
 from graphflow.analysis.user_code import Pause
 from graphflow.deadlock.asyncio_frames import (
     ENDINGS,
@@ -278,7 +278,7 @@ class Question:
         loop = None if place is None else place.loops[-1]
         if place is None or loop is None or not may_poll(loop):
             return None
-        called = {use.attr for use in ast.walk(loop) if isinstance(use, ast.Attribute) and is_own(use)}
+        called = {use.attr for use in nodes_in(loop) if isinstance(use, ast.Attribute) and is_own(use)}
         below = {method for name in called & set(self._source.methods) for method in self._source.below(name)}
         if self._source.may_fail(loop, below):  # an exception would end the loop
             raise Unknown
@@ -286,7 +286,7 @@ class Question:
         attributes, module = conditions.attributes(), str(place.frame.f_globals.get("__name__", ""))
         uses = [use for name in attributes for use in self._changes(name)]
         uses += [use for name in conditions.names for use in changes(name, module, self._source)]
-        inside = set(ast.walk(loop))
+        inside = set(nodes_in(loop))
         if any(use.syntax in inside or use.method in below for use in uses):  # the loop changes its own condition
             raise Unknown
         changing = {use.method for use in uses}

@@ -12,7 +12,7 @@ from enum import EnumType
 from importlib import import_module
 from types import CodeType, FrameType, FunctionType, MethodType, ModuleType
 
-from graphflow.analysis.syntax import last_name, syntax_of
+from graphflow.analysis.syntax import last_name, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users, short_place
 from graphflow.msgs import registry
 from graphflow.msgs.registry import KINDS
@@ -85,7 +85,7 @@ def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
 
 def _of_tuple(path: str, frame: FrameType) -> str:
     """Explain why a name stands for a tuple, if the source shows that."""
-    for node in ast.walk(syntax_of(frame.f_code.co_filename).module):
+    for node in nodes_in(syntax_of(frame.f_code.co_filename).module):
         match node:
             case ast.Assign(targets=[target], value=value) if ast.unparse(target) == path:
                 if isinstance(value, ast.Tuple) and len(value.elts) == 1:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from types import FrameType
 
-from graphflow.analysis.syntax import first_line, syntax_of
+from graphflow.analysis.syntax import first_line, nodes_in, syntax_of
 from graphflow.analysis.user_code import short_place
 from graphflow.rclpy.hints.frames import PATH, is_defined_by_user, lacking, line_of, named, own
 
@@ -19,7 +19,7 @@ def early_result(error: BaseException, frames: list[FrameType]) -> str:
         return ""
     frame = users[-1]
     owners = [path.rpartition(".")[0] for path in PATH.findall(line_of(frames)) if path.endswith(f".{found[1]}")]
-    for node in ast.walk(_function_of(frame)):
+    for node in nodes_in(_function_of(frame)):
         match node:
             case ast.Assign(targets=[target], value=ast.Call(func=ast.Attribute(value=future, attr="result"))):
                 path = ast.unparse(future)

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from types import CodeType, FrameType
 
-from graphflow.analysis.syntax import first_line, last_name, syntax_of, walk
+from graphflow.analysis.syntax import first_line, last_name, nodes_in, syntax_of, walk
 from graphflow.analysis.user_code import is_users, short_place
 
 LOOK_AFTER = 2.0
@@ -75,12 +75,12 @@ def lines_in(code: CodeType, now: int) -> Iterator[int]:
     for top in [syntax.module] if code.co_name == "<module>" else tops:
         for loop, _ in walk(top, into_functions=False):
             if isinstance(loop, ast.While) and loop.lineno <= now <= (loop.end_lineno or 0) and _is_endless(loop):
-                handlers = (node for node in ast.walk(loop) if isinstance(node, ast.ExceptHandler))
+                handlers = (node for node in nodes_in(loop) if isinstance(node, ast.ExceptHandler))
                 yield from (handler.lineno for handler in handlers if _catches_all(handler))
 
 
 def _is_endless(loop: ast.While) -> bool:
-    leaves = any(isinstance(node, (ast.Break, ast.Return)) for node in ast.walk(loop))
+    leaves = any(isinstance(node, (ast.Break, ast.Return)) for node in nodes_in(loop))
     return isinstance(loop.test, ast.Constant) and bool(loop.test.value) and not leaves
 
 
@@ -88,5 +88,5 @@ def _catches_all(handler: ast.ExceptHandler) -> bool:
     """Whether an `except` catches all that is raised, and goes on."""
     catches = handler.type is None or last_name(handler.type) == "BaseException"
     ends = (ast.Raise, ast.Call)
-    calls = (node for node in ast.walk(handler) if isinstance(node, ends))
+    calls = (node for node in nodes_in(handler) if isinstance(node, ends))
     return catches and not any(isinstance(c, ast.Raise) or last_name(c.func) in ("exit", "_exit") for c in calls)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from functools import cache
 
-from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.syntax import nodes_in, syntax_of
 from graphflow.errors import Place
 
 _WAITS = (ast.Await, ast.AsyncFor, ast.AsyncWith, ast.Yield, ast.YieldFrom, ast.Raise)
@@ -40,7 +40,7 @@ def _idle_block(place: Place) -> str:
             call = item.context_expr
             if isinstance(call, ast.Call) and call.lineno <= place.line <= (call.end_lineno or call.lineno):
                 assert isinstance(block, ast.AsyncWith)
-                inside = (node for statement in block.body for node in ast.walk(statement))
+                inside = (node for statement in block.body for node in nodes_in(statement))
                 name = ast.unparse(item.optional_vars) if item.optional_vars else "goal"
                 return "" if any(isinstance(node, _WAITS) for node in inside) else name
     return ""

@@ -9,7 +9,7 @@ from types import CodeType
 from typing import Any
 
 from graphflow.analysis.swallowed import catching
-from graphflow.analysis.syntax import first_line, syntax_of
+from graphflow.analysis.syntax import first_line, nodes_in, syntax_of
 from graphflow.analysis.user_code import innermost, is_users, short_place
 from graphflow.deadlock.asyncio_frames import TaskLike, frames_of
 from graphflow.executor.runner import Runner
@@ -65,11 +65,11 @@ def _in_loops(code: CodeType) -> Iterator[int]:
         return
     for function in functions:
         if (function.name, first_line(function)) == (code.co_name, code.co_firstlineno):
-            loops = (node for node in ast.walk(function) if isinstance(node, _LOOPS))
-            handlers = {node for loop in loops for node in ast.walk(loop) if isinstance(node, ast.ExceptHandler)}
+            loops = (node for node in nodes_in(function) if isinstance(node, _LOOPS))
+            handlers = {node for loop in loops for node in nodes_in(loop) if isinstance(node, ast.ExceptHandler)}
             yield from sorted(handler.lineno for handler in handlers if catching(handler) and not _leaves(handler))
 
 
 def _leaves(handler: ast.ExceptHandler) -> bool:
     """Whether a handler may leave the loop."""
-    return any(isinstance(node, (ast.Raise, ast.Break, ast.Return)) for node in ast.walk(handler))
+    return any(isinstance(node, (ast.Raise, ast.Break, ast.Return)) for node in nodes_in(handler))

@@ -6,7 +6,7 @@ import ast
 import re
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import FunctionNode, blocks, last_name
+from graphflow.analysis.syntax import FunctionNode, blocks, last_name, nodes_in
 
 _SENDS = {"publish", "call_async", "call", "send_goal", "send_goal_async", "create_timer", "create_subscription"}
 _IS_LAST = re.compile(r"stop|halt|brake|shut|close|clean|destroy|finish|exit|quit|save|on_|end|reset|land|disarm")
@@ -17,10 +17,10 @@ def after_spin(module: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines after `rclpy.spin` that send or create something, or read a result; each comes with a sentence."""
     sending = {
         method.name
-        for method in ast.walk(module)
-        if isinstance(method, FunctionNode) and any(_sends(node) for node in ast.walk(method))
+        for method in nodes_in(module)
+        if isinstance(method, FunctionNode) and any(_sends(node) for node in nodes_in(method))
     }
-    for node in ast.walk(module):
+    for node in nodes_in(module):
         for block in blocks(node):
             yield from _after(block, sending)
 
@@ -48,7 +48,7 @@ def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]
 
 def _destroyed(before: list[ast.stmt], spin: ast.stmt) -> Iterator[tuple[int, str]]:
     """Yield the line that destroys the node which a spin is given."""
-    spun = {node.id for node in ast.walk(spin) if isinstance(node, ast.Name)}
+    spun = {node.id for node in nodes_in(spin) if isinstance(node, ast.Name)}
     for statement in before:
         match statement:
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=ast.Name(id=node), attr="destroy_node"))):
@@ -66,7 +66,7 @@ def _assigned(statement: ast.stmt) -> Iterator[str]:
 
 def _results(statement: ast.stmt) -> Iterator[str]:
     """Yield the names whose `result()` a statement calls."""
-    for node in ast.walk(statement):
+    for node in nodes_in(statement):
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="result"), args=[]):
                 yield name

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
-from graphflow.analysis.syntax import walk
+from graphflow.analysis.syntax import nodes_in, walk
 
 _SHORT = 0.05
 """Seconds that a sleep may take without anybody noticing."""
@@ -25,7 +25,7 @@ def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
                 text = "time.sleep in an async def stops every handler of the process"
                 yield node.lineno, f"{text}; write await self.clock.sleep({ast.unparse(pause)})"
             case ast.While(test=ast.Constant(value=True | 1)):
-                if not any(isinstance(part, _PAUSES) for part in ast.walk(node)):
+                if not any(isinstance(part, _PAUSES) for part in nodes_in(node)):
                     text = "this loop never awaits, so no other handler of the process runs"
                     yield node.lineno, f"{text}; end each turn with await self.clock.sleep(0.1), or write @timer(0.1)"
 

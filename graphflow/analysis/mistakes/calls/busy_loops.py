@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import last_name
+from graphflow.analysis.syntax import last_name, nodes_in
 
 _LONGEST_PAUSE = 0.2
 """Seconds that a loop around `spin_once` may sleep: beside it, most sensors publish more often."""
@@ -13,7 +13,7 @@ _LONGEST_PAUSE = 0.2
 
 def busy_loops(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines of such loops; each comes with a sentence."""
-    for loop in ast.walk(code):
+    for loop in nodes_in(code):
         if isinstance(loop, ast.While):
             yield from _without_pause(loop)
             yield from _between_spins(loop)
@@ -51,7 +51,7 @@ def _between_spins(loop: ast.While) -> Iterator[tuple[int, str]]:
 
 def _only_reads(test: ast.expr) -> bool:
     """Whether a condition has no effect and can change."""
-    return not isinstance(test, ast.Constant) and not any(isinstance(part, ast.Call) for part in ast.walk(test))
+    return not isinstance(test, ast.Constant) and not any(isinstance(part, ast.Call) for part in nodes_in(test))
 
 
 def _number(value: ast.expr) -> float | None:

@@ -6,14 +6,14 @@ import ast
 from collections.abc import Iterator
 
 from graphflow.analysis.bindings import bindings_of
-from graphflow.analysis.syntax import last_name, walk
+from graphflow.analysis.syntax import last_name, nodes_in, walk
 
 _SOURCES = ("get_result_async", "send_goal_async")
 
 
 def cancelled_futures(module: ast.Module) -> Iterator[tuple[int, str]]:
     """Find the lines that cancel such a future in a file that never cancels a goal; each comes with its correction."""
-    called = {node.attr for node in ast.walk(module) if isinstance(node, ast.Attribute)}
+    called = {node.attr for node in nodes_in(module) if isinstance(node, ast.Attribute)}
     if called.isdisjoint(_SOURCES) or called & {"cancel_goal_async", "cancel_goal"}:
         return
     bindings = bindings_of(module)

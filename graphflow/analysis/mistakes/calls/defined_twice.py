@@ -7,7 +7,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 _TAKERS = ("create_subscription", "create_timer", "create_service", "add_done_callback", "ActionServer")
 
@@ -17,7 +17,7 @@ def defined_twice(code: ast.AST) -> Iterator[tuple[int, str]]:
 
     Methods with decorators, such as properties, may share a name on purpose, and a repeated copy changes nothing.
     """
-    for definition in ast.walk(code):
+    for definition in nodes_in(code):
         if isinstance(definition, ast.ClassDef):
             yield from _in_class(definition)
 
@@ -39,6 +39,6 @@ def _in_class(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
 
 def _passed(definition: ast.ClassDef) -> Counter[str]:
     """Count the calls that take each method as a callback."""
-    calls = (n for n in ast.walk(definition) if isinstance(n, ast.Call) and last_name(n.func) in _TAKERS)
+    calls = (n for n in nodes_in(definition) if isinstance(n, ast.Call) and last_name(n.func) in _TAKERS)
     given = (value for call in calls for value in (*call.args, *(keyword.value for keyword in call.keywords)))
     return Counter(value.attr for value in given if isinstance(value, ast.Attribute) and is_own(value))

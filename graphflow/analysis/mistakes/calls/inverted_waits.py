@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import last_name
+from graphflow.analysis.syntax import last_name, nodes_in
 
 _WAITS = ("wait_for_service", "wait_for_server")
 _LOGS = ("debug", "info", "warn", "warning", "error", "print", "sleep")
@@ -13,7 +13,7 @@ _LOGS = ("debug", "info", "warn", "warning", "error", "print", "sleep")
 
 def inverted_waits(module: ast.AST) -> Iterator[tuple[int, str]]:
     """Find loops that only log or pause for as long as such a wait succeeds; each comes with its correction."""
-    for node in ast.walk(module):
+    for node in nodes_in(module):
         match node:
             case ast.While(test=ast.Call(func=function) as test, body=body) if last_name(function) in _WAITS:
                 if all(map(_only_tells, body)):

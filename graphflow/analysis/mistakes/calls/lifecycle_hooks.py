@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 from graphflow.names import nearest
 
 _HOOKS = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_shutdown", "on_error")
@@ -15,8 +15,8 @@ _OWN = {"on_configure", "on_activate", "on_deactivate"}
 
 def lifecycle_hooks(module: ast.Module) -> Iterator[tuple[int, str]]:
     """Find such hooks in a file; each comes with the name, or the base class, that makes it one."""
-    used = {n.attr for n in ast.walk(module) if isinstance(n, ast.Attribute) and not isinstance(n.value, ast.Call)}
-    for cls in ast.walk(module):
+    used = {n.attr for n in nodes_in(module) if isinstance(n, ast.Attribute) and not isinstance(n.value, ast.Call)}
+    for cls in nodes_in(module):
         if not isinstance(cls, ast.ClassDef):
             continue
         bases = [last_name(base) for base in cls.bases]

@@ -10,7 +10,7 @@ import ast
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple, TypeAlias
 
-from graphflow.analysis.syntax import NESTED, FunctionNode, walk
+from graphflow.analysis.syntax import NESTED, FunctionNode, nodes_in, walk
 
 _TAKERS = {
     *("create_subscription", "create_timer", "create_service", "create_action_server", "create_guard_condition"),
@@ -58,7 +58,7 @@ _THREADS = {"to_thread": 0, "run_in_executor": 1, "submit": 0, "Timer": 1, "Thre
 
 
 def _in_threads(code: ast.AST, methods: dict[str, FunctionNode], starts: str) -> Iterator[tuple[int, str]]:
-    for node in ast.walk(code):
+    for node in nodes_in(code):
         if not isinstance(node, ast.Call) or (word := _last_name(node.func)) not in _THREADS:
             continue
         at = _THREADS[word]
@@ -99,7 +99,7 @@ def _methods(code: ast.AST) -> dict[str, FunctionNode]:
     """Return the methods of the classes, except those whose names have other meanings, too."""
     found: dict[str, FunctionNode] = {}
     others: set[str] = set()
-    for node in ast.walk(code):
+    for node in nodes_in(code):
         if isinstance(node, ast.ClassDef):
             for item in node.body:
                 if isinstance(item, FunctionNode):
@@ -139,10 +139,10 @@ def _of_loop(given: _Given) -> str:
     loop = _loop_around(given.parents)
     if loop is None or _may_be_over(loop):
         return ""
-    own = {name.id for name in ast.walk(given.made) if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}
-    own |= {argument.arg for argument in ast.walk(given.made) if isinstance(argument, ast.arg)}
+    own = {name.id for name in nodes_in(given.made) if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}
+    own |= {argument.arg for argument in nodes_in(given.made) if isinstance(argument, ast.arg)}
     body = given.made.body if isinstance(given.made.body, list) else [given.made.body]
-    read = [n.id for part in body for n in ast.walk(part) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)]
+    read = [n.id for part in body for n in nodes_in(part) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)]
     changing = _changing(loop, given.parents)
     return next((name for name in read if name in changing and name not in own), "")
 
@@ -167,10 +167,10 @@ def _changing(loop: ast.AST, parents: Sequence[ast.AST]) -> set[str]:
     if not isinstance(loop, (ast.For, ast.While)):
         return set()
     found = set(_names(loop.target)) if isinstance(loop, ast.For) else set()
-    for node in (n for statement in loop.body for n in ast.walk(statement)):
+    for node in (n for statement in loop.body for n in nodes_in(statement)):
         if isinstance(node, ast.Assign) and found & set(_names(node.value)):
             found |= {target.id for target in node.targets if isinstance(target, ast.Name)}
-    for node in ast.walk(parents[0]):
+    for node in nodes_in(parents[0]):
         if isinstance(node, (ast.Global, ast.Nonlocal)):
             found -= set(node.names)
         elif isinstance(node, ast.AugAssign):
@@ -179,7 +179,7 @@ def _changing(loop: ast.AST, parents: Sequence[ast.AST]) -> set[str]:
 
 
 def _names(node: ast.AST) -> list[str]:
-    return [name.id for name in ast.walk(node) if isinstance(name, ast.Name)]
+    return [name.id for name in nodes_in(node) if isinstance(name, ast.Name)]
 
 
 def _with_default(arguments: ast.arguments, name: str) -> ast.arguments:

@@ -10,7 +10,7 @@ import ast
 from collections.abc import Iterator
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 _DECORATORS = {"timer", "subscription", "service", "action", "task"}
 _METHODS = {"publish", "publish_feedback", "feedback", "succeed", "abort", "canceled", "send_goal_async", "call_async"}
@@ -35,7 +35,7 @@ def _misspelt(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[
 
 
 def _inside(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[int, str]]:
-    for node in ast.walk(method):
+    for node in nodes_in(method):
         if node is method or not isinstance(node, FunctionNode):
             continue
         for decorator in node.decorator_list:
@@ -47,7 +47,7 @@ def _inside(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[in
 
 def replaced_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find assignments to methods that are to be called: `self.pub.publish = message`."""
-    for node in ast.walk(code):
+    for node in nodes_in(code):
         if not isinstance(node, ast.Assign) or _is_function(node.value):
             continue
         for target in node.targets:

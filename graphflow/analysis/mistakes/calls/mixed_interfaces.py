@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from graphflow.analysis.syntax import nodes_in
+
 _INSTEAD = {
     "timer": "self.create_timer(...)",
     "subscription": "self.create_subscription(...)",
@@ -24,13 +26,13 @@ def mixed_interfaces(module: ast.Module) -> Iterator[tuple[int, str]]:
     """Find graphflow's declarations in classes that derive from rclpy's Node; each comes with a sentence."""
     imported = {
         alias.asname or alias.name: (found.module or "", alias.name)
-        for found in ast.walk(module)
+        for found in nodes_in(module)
         if isinstance(found, ast.ImportFrom)
         for alias in found.names
     }
     native = {used: name for used, (source, name) in imported.items() if source == "graphflow" and name in _INSTEAD}
     nodes = {used for used, (source, name) in imported.items() if source.split(".")[0] == "rclpy" and "Node" in name}
-    for cls in ast.walk(module) if native else ():
+    for cls in nodes_in(module) if native else ():
         if not isinstance(cls, ast.ClassDef) or not any(_is_rclpys(base, nodes) for base in cls.bases):
             continue
         for item in cls.body:

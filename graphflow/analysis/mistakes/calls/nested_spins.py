@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 
 from graphflow.analysis.mistakes.calls.called_early import TAKERS
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 
 def nested_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
@@ -14,13 +14,13 @@ def nested_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
 
     One that spins it for ever keeps its group, which is reported as it happens.
     """
-    calls = [node for node in ast.walk(module) if isinstance(node, ast.Call)]
+    calls = [node for node in nodes_in(module) if isinstance(node, ast.Call)]
     given = [(call, TAKERS[last_name(call.func)]) for call in calls if last_name(call.func) in TAKERS]
     callbacks = {last_name(call.args[at]) for call, at in given if len(call.args) > at}
-    for method in ast.walk(module):
+    for method in nodes_in(module):
         if not isinstance(method, FunctionNode) or method.name not in callbacks:
             continue
-        for node in ast.walk(method):
+        for node in nodes_in(method):
             match node:
                 case ast.Call(
                     func=ast.Attribute(value=ast.Name("rclpy"), attr="spin_once"), args=[ast.Name("self"), *_]

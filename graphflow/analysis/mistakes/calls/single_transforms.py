@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator, Sequence
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import REPEATING, FunctionNode, last_name, walk
+from graphflow.analysis.syntax import REPEATING, FunctionNode, last_name, nodes_in, walk
 
 _SENDERS = {"Transforms": "send", "TransformBroadcaster": "sendTransform"}
 """Classes that send transforms, and their methods that do."""
@@ -16,7 +16,7 @@ _STARTS = ("__init__", "on_start")
 
 def single_transforms(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines that send a transform of a class whose nodes send none later; each comes with its correction."""
-    for definition in ast.walk(code):
+    for definition in nodes_in(code):
         if isinstance(definition, ast.ClassDef):
             for name, method in _senders(definition).items():
                 yield from _single(definition, name, method)
@@ -25,7 +25,7 @@ def single_transforms(code: ast.AST) -> Iterator[tuple[int, str]]:
 def _senders(definition: ast.ClassDef) -> dict[str, str]:
     """Return the attributes that send transforms, each with the method that does."""
     found: dict[str, str] = {}
-    for node in ast.walk(definition):
+    for node in nodes_in(definition):
         match node:
             case ast.Assign(
                 targets=[ast.Name(id=name) | ast.Attribute(value=ast.Name(id="self"), attr=name)],

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 
 from graphflow.analysis.bindings import Bindings, bindings_of
-from graphflow.analysis.syntax import last_name, walk
+from graphflow.analysis.syntax import last_name, nodes_in, walk
 
 _MILLISECONDS = re.compile(r"(?i)(.*_)?(ms|msec|msecs|millis|milliseconds)")
 _FREQUENCIES = re.compile(r"(?i)(.*_)?(hz|hertz|rate|freq|frequency|fps)")
@@ -91,8 +91,8 @@ def _is_swapped(call: ast.Call) -> bool:
 
 def _turns_from_x(module: ast.Module) -> bool:
     """Whether a file subtracts an angle that counts from the x axis, as a pose's, and has none from north."""
-    words = {last_name(node) for node in ast.walk(module) if isinstance(node, (ast.Name, ast.Attribute))}
-    taken = [n.right for n in ast.walk(module) if isinstance(n, ast.BinOp) and isinstance(n.op, ast.Sub)]
+    words = {last_name(node) for node in nodes_in(module) if isinstance(node, (ast.Name, ast.Attribute))}
+    taken = [n.right for n in nodes_in(module) if isinstance(n, ast.BinOp) and isinstance(n.op, ast.Sub)]
     return any(last_name(n) in ("theta", "yaw") for n in taken) and not any(map(_FROM_NORTH.search, words))
 
 
@@ -100,6 +100,6 @@ def _is_quarter(term: ast.BinOp) -> bool:
     """Whether a sum has a right angle in it, which turns the one axis into the other."""
     return any(
         last_name(node) == "pi" or (isinstance(node, ast.Constant) and node.value in (90, 1.57, 1.5708))
-        for node in ast.walk(term)
+        for node in nodes_in(term)
         if isinstance(node, ast.expr)
     )

@@ -5,18 +5,18 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import FunctionNode
+from graphflow.analysis.syntax import FunctionNode, nodes_in
 
 
 def lone_nanoseconds(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines that compute with `nanosec` in functions that never read `sec`; each comes with its correction."""
-    for function in ast.walk(code):
+    for function in nodes_in(code):
         if not isinstance(function, FunctionNode):
             continue
-        read = {node.attr for node in ast.walk(function) if isinstance(node, ast.Attribute)}
+        read = {node.attr for node in nodes_in(function) if isinstance(node, ast.Attribute)}
         if "nanosec" not in read or read & {"sec", "from_msg"}:
             continue
-        for node in ast.walk(function):
+        for node in nodes_in(function):
             match node:
                 case ast.BinOp(left=left, op=ast.Mult() | ast.Div() | ast.Sub(), right=right):
                     stamp = _stamp(left) or (_stamp(right) if isinstance(node.op, ast.Sub) else None)

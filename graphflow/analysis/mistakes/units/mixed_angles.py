@@ -13,7 +13,7 @@ from typing import Literal, TypeAlias
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.mistakes.pose_names import DEPTH, PoseNames, pose_names
-from graphflow.analysis.syntax import last_name, walk
+from graphflow.analysis.syntax import last_name, nodes_in, walk
 
 _DEGREES = ("degrees", "rad2deg")
 _RADIANS = ("radians", "deg2rad")
@@ -34,7 +34,7 @@ def mixed_angles(module: ast.Module) -> tuple[tuple[int, str], ...]:
 
 def _has_conversions(module: ast.Module) -> bool:
     """Whether a file mentions degrees or conversions at all; most do not."""
-    for node in ast.walk(module):
+    for node in nodes_in(module):
         match node:
             case ast.Attribute(attr=name) | ast.Name(id=name) | ast.Constant(value=str(name)):
                 if name in (*_DEGREES, *_RADIANS) or _UNITS.get(name) == "degrees":

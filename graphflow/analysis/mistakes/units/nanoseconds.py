@@ -12,7 +12,7 @@ from typing import Literal, TypeAlias
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.bindings import Bindings, bindings_of
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 
 _COUNTS = ("time_ns", "monotonic_ns")
 """Functions and methods of clocks that return nanoseconds; `perf_counter_ns` may well measure a few of them."""
@@ -37,7 +37,7 @@ def compared_nanoseconds(module: ast.Module) -> tuple[tuple[int, str], ...]:
 
 
 def _compared(module: ast.Module) -> Iterator[tuple[int, str]]:
-    named = (node for node in ast.walk(module) if isinstance(node, (ast.Attribute, ast.Name)))
+    named = (node for node in nodes_in(module) if isinstance(node, (ast.Attribute, ast.Name)))
     if not any(last_name(node) in (*_COUNTS, "nanoseconds") for node in named):
         return
     bindings = bindings_of(module)

@@ -6,6 +6,8 @@ import ast
 import re
 from collections.abc import Iterator
 
+from graphflow.analysis.syntax import nodes_in
+
 _PARTS = ("x", "y", "z", "w")
 _OWNERS = ("orientation", "rotation")
 _IS_HEADING = re.compile(r"(current_|robot_|cur_|start_|my_|last_|prev_)*(yaw|theta|heading|angle)")
@@ -14,7 +16,7 @@ _IS_ANGLE = re.compile(r"(?!.*(sin|cos|half|quat))(.*_)?(yaw|theta|heading|angle
 
 def angles_as_quaternions(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines that take a part of an orientation for an angle; each comes with a sentence."""
-    for node in ast.walk(code):
+    for node in nodes_in(code):
         match node:
             case ast.Assign(
                 targets=[ast.Name(id=name) | ast.Attribute(attr=name)],
@@ -49,7 +51,7 @@ def _text(target: str, part: str, value: ast.expr) -> str:
 
 def _is_angle(value: ast.expr) -> bool:
     """Whether an expression is larger than a part of a unit quaternion, or has the name of an angle and no sine."""
-    parts = list(ast.walk(value))
+    parts = nodes_in(value)
     if any(isinstance(part, (ast.Call, ast.Subscript)) for part in parts):
         return any(isinstance(part, ast.Attribute) and part.attr == "radians" for part in parts) and _calls(parts) == 1
     match value:

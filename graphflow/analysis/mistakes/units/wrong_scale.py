@@ -5,12 +5,14 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from graphflow.analysis.syntax import nodes_in
+
 _LEAST_PERCENT = 2
 
 
 def wrong_scale(module: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines that compare a BatteryState's `percentage` with a percentage; each comes with its correction."""
-    nodes = list(ast.walk(module))
+    nodes = nodes_in(module)
     if not any(isinstance(node, ast.Name) and node.id == "BatteryState" for node in nodes):
         return
     for node in nodes:

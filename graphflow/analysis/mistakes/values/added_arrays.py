@@ -5,12 +5,14 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from graphflow.analysis.syntax import nodes_in
+
 _ARRAYS = ("ranges", "intensities")
 
 
 def added_arrays(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines that add two slices of one array; each comes with the function that joins them."""
-    for node in ast.walk(code):
+    for node in nodes_in(code):
         match node:
             case ast.BinOp(
                 left=ast.Subscript(value=ast.Attribute(attr=first), slice=ast.Slice()) as left,

@@ -11,7 +11,7 @@ from functools import cache
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.bindings import bindings_of
-from graphflow.analysis.syntax import FunctionNode, walk
+from graphflow.analysis.syntax import FunctionNode, nodes_in, walk
 from graphflow.names import nearest
 
 
@@ -47,7 +47,7 @@ class _Methods:
 
     def __init__(self, module: ast.Module) -> None:
         self._set: set[str] = set()
-        for node in ast.walk(module):
+        for node in nodes_in(module):
             match node:
                 case ast.Attribute(attr=name, ctx=ast.Store() | ast.Del()) | ast.Name(id=name, ctx=ast.Store()):
                     self._set.add(name)
@@ -133,7 +133,7 @@ def _compared_texts(module: ast.Module) -> Iterator[tuple[ast.Attribute, int, st
 
 
 def _texts(part: ast.AST) -> Iterator[tuple[ast.Constant, str]]:
-    for node in ast.walk(part):
+    for node in nodes_in(part):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             yield node, node.value
 
@@ -142,7 +142,7 @@ def _texts_set(module: ast.Module, name: str) -> set[str] | None:
     """Return the texts that attributes of a name are set to; None if they may have other values."""
     found: set[str] = set()
     places = 0
-    for node in ast.walk(module):
+    for node in nodes_in(module):
         match node:
             case (
                 ast.Assign(targets=[target], value=ast.expr() as value)

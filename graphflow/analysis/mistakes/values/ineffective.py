@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from graphflow.analysis.syntax import children_of
+
 _SIGNS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
 _PLACES = (ast.Name, ast.Attribute, ast.Subscript)
 """Expressions that can be assigned to."""
@@ -32,10 +34,10 @@ def ineffective(code: ast.AST) -> Iterator[tuple[int, str]]:
             ):
                 place, given = ast.unparse(target), ast.unparse(step)
                 yield node.lineno, f"{place} =+ {given} sets it to {given}; write {place} += {given}"
-        children = list(ast.iter_child_nodes(node))
+        below = children_of(node)
         if isinstance(node, (ast.Try, ast.TryStar, ast.With, ast.AsyncWith)) and len(node.body) == 1:
-            children = [child for child in children if child not in node.body]
-        todo += [(child, is_inside) for child in reversed(children)]
+            below = tuple(child for child in below if child not in node.body)
+        todo += [(child, is_inside) for child in reversed(below)]
 
 
 def _instead(value: ast.expr) -> str:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 
 _CALLED_BACK = {"create_timer": "timer", "create_subscription": "subscription"}
 _KINDS = {**_CALLED_BACK, "timer": "timer", "subscription": "subscription"}
@@ -19,7 +19,7 @@ _KINDS = {**_CALLED_BACK, "timer": "timer", "subscription": "subscription"}
 @cache
 def lost_values(module: ast.Module) -> tuple[tuple[int, str], ...]:
     """Return the lines of a file that lose such a value; each comes with its correction."""
-    classes = [node for node in ast.walk(module) if isinstance(node, ast.ClassDef)]
+    classes = [node for node in nodes_in(module) if isinstance(node, ast.ClassDef)]
     messages = _messages(module)
     found = [slip for cls in classes for slip in (*_locals(cls), *_returned(module, cls, messages))]
     for method in (node for cls in classes for node in cls.body if isinstance(node, FunctionNode)):
@@ -29,7 +29,7 @@ def lost_values(module: ast.Module) -> tuple[tuple[int, str], ...]:
 
 def _locals(cls: ast.ClassDef) -> Iterator[tuple[int, str]]:
     """Find local variables that nothing reads, named as an attribute that other lines set and read."""
-    own = [node for node in ast.walk(cls) if is_own(node)]
+    own = [node for node in nodes_in(cls) if is_own(node)]
     read = {node.attr for node in own if isinstance(node.ctx, ast.Load)}
     set_ = {node.attr for node in own if isinstance(node.ctx, ast.Store)}
     targets = [target for s in cls.body if isinstance(s, ast.Assign) for target in s.targets]
@@ -40,8 +40,8 @@ def _locals(cls: ast.ClassDef) -> Iterator[tuple[int, str]]:
 
 
 def _unread(method: FunctionNode, attributes: set[str]) -> Iterator[tuple[int, str]]:
-    known = {argument.arg for argument in ast.walk(method.args) if isinstance(argument, ast.arg)}
-    for node in ast.walk(method):
+    known = {argument.arg for argument in nodes_in(method.args) if isinstance(argument, ast.arg)}
+    for node in nodes_in(method):
         match node:
             case ast.Name(id="locals" | "vars" | "eval" | "exec"):
                 return
@@ -66,12 +66,12 @@ def _unread(method: FunctionNode, attributes: set[str]) -> Iterator[tuple[int, s
 def _is_pure(value: ast.expr) -> bool:
     """Whether an expression only computes, so that there is no other reason to write it."""
     doing = (ast.Call, ast.Await, ast.Yield, ast.YieldFrom, ast.NamedExpr)
-    return not any(isinstance(node, doing) for node in ast.walk(value))
+    return not any(isinstance(node, doing) for node in nodes_in(value))
 
 
 def _messages(module: ast.Module) -> set[str]:
     """Return the names of message classes that a file imports."""
-    imports = [node for node in ast.walk(module) if isinstance(node, ast.ImportFrom)]
+    imports = [node for node in nodes_in(module) if isinstance(node, ast.ImportFrom)]
     return {alias.asname or alias.name for node in imports if str(node.module).endswith(".msg") for alias in node.names}
 
 
@@ -156,7 +156,7 @@ def _handlers(module: ast.Module, cls: ast.ClassDef) -> Iterator[tuple[FunctionN
 def _only_returned(value: ast.expr, method: FunctionNode, messages: set[str]) -> str:
     """Return the class of a message that a method makes, returns, and does not use in another way; else ""."""
     if isinstance(value, ast.Call):
-        calls = [n.func for n in ast.walk(method) if isinstance(n, ast.Call)]
+        calls = [n.func for n in nodes_in(method) if isinstance(n, ast.Call)]
         publishes = any(last_name(function) == "publish" for function in calls)
         return last_name(value.func) if _makes(value, messages) and not publishes else ""
     if not isinstance(value, ast.Name):
@@ -179,7 +179,7 @@ def _makes(call: ast.Call, messages: set[str]) -> bool:
 def _publisher(cls: ast.ClassDef, type_: str) -> str:
     """Return the attribute with the publisher of a message class; empty if there is not exactly one."""
     found: set[str] = set()
-    for node in ast.walk(cls):
+    for node in nodes_in(cls):
         match node:
             case ast.Assign(
                 targets=[ast.Name(id=name) | ast.Attribute(attr=name)], value=ast.Call(func=made, args=[first, *_])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator
 
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 
 def message_values(code: ast.AST, callbacks: Collection[str]) -> Iterator[tuple[int, str]]:
@@ -14,14 +14,14 @@ def message_values(code: ast.AST, callbacks: Collection[str]) -> Iterator[tuple[
     Args:
         callbacks: The methods that receive messages.
     """
-    for method in ast.walk(code):
+    for method in nodes_in(code):
         if not isinstance(method, FunctionNode) or method.name not in callbacks or len(method.args.args) != 2:
             continue
         name = method.args.args[1].arg
-        if any(isinstance(n, ast.Name) and n.id == name and isinstance(n.ctx, ast.Store) for n in ast.walk(method)):
+        if any(isinstance(n, ast.Name) and n.id == name and isinstance(n.ctx, ast.Store) for n in nodes_in(method)):
             continue
         way = f"write {name}.data, or another field"
-        for node in ast.walk(method):
+        for node in nodes_in(method):
             match node:
                 case ast.Compare(
                     left=ast.Name(id=used), comparators=[ast.Constant(value=str() | int() | float() as v)]
@@ -36,7 +36,7 @@ def message_values(code: ast.AST, callbacks: Collection[str]) -> Iterator[tuple[
 
 def subscribed(module: ast.AST) -> set[str]:
     """Return the methods that a program for rclpy subscribes."""
-    calls = (node for node in ast.walk(module) if isinstance(node, ast.Call))
+    calls = (node for node in nodes_in(module) if isinstance(node, ast.Call))
     return {
         last_name(call.args[2])
         for call in calls

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 
 from graphflow.analysis.bindings import bindings_of
-from graphflow.analysis.syntax import last_name, walk
+from graphflow.analysis.syntax import last_name, nodes_in, walk
 
 _LISTS = {"get_topic_names_and_types", "get_service_names_and_types", "get_node_names_and_namespaces"}
 """Methods of rclpy's nodes that return lists of pairs, whose first item is a name."""
@@ -14,7 +14,7 @@ _LISTS = {"get_topic_names_and_types", "get_service_names_and_types", "get_node_
 
 def names_in_pairs(module: ast.Module) -> Iterator[tuple[int, str]]:
     """Find the lines that look for a text in such a list; each comes with its correction."""
-    if _LISTS.isdisjoint(node.attr for node in ast.walk(module) if isinstance(node, ast.Attribute)):
+    if _LISTS.isdisjoint(node.attr for node in nodes_in(module) if isinstance(node, ast.Attribute)):
         return
     bindings = bindings_of(module)
     for node, parents in walk(module):

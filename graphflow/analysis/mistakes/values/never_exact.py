@@ -8,7 +8,7 @@ from functools import cache
 
 from graphflow.analysis.bindings import Bindings
 from graphflow.analysis.mistakes.pose_names import PoseNames, pose_names
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 
 
 @cache
@@ -24,7 +24,7 @@ def _exact(module: ast.Module) -> Iterator[tuple[int, str]]:
     names = pose_names(module)
     if not names.poses:
         return
-    words = {last_name(node) for node in ast.walk(module) if isinstance(node, (ast.Name, ast.Attribute))}
+    words = {last_name(node) for node in nodes_in(module) if isinstance(node, (ast.Name, ast.Attribute))}
     if any("teleport" in word.lower() for word in words):
         return
     for node, parents in walk(module):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
-from graphflow.analysis.syntax import FunctionNode, blocks, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, blocks, last_name, nodes_in, walk
 
 _SETUP = ("__init__", "on_start", "on_configure")
 
@@ -16,7 +16,7 @@ def reused_objects(code: ast.AST) -> Iterator[tuple[int, str]]:
     Found are a local variable that is made outside the loop, and an attribute of a node that a handler changes.
     """
     found: dict[int, str] = {}
-    for node in ast.walk(code):
+    for node in nodes_in(code):
         if isinstance(node, ast.ClassDef) and any(last_name(base).endswith("Node") for base in node.bases):
             handlers = [m for m in node.body if isinstance(m, FunctionNode) and m.name not in _SETUP]
             for handler in handlers:
@@ -33,8 +33,8 @@ def _appended(repeated: ast.AST, makers: Sequence[ast.AST], *, of_node: bool) ->
         makers: The code that could make the object anew.
         of_node: Whether to look for attributes of a node only.
     """
-    changed = {name for node in ast.walk(repeated) for name in _changed_by(node)}
-    made = {name for maker in makers for node in ast.walk(maker) for name in _made_by(node)}
+    changed = {name for node in nodes_in(repeated) for name in _changed_by(node)}
+    made = {name for maker in makers for node in nodes_in(maker) for name in _made_by(node)}
     found: dict[int, str] = {}
     for node, parents in walk(repeated):
         match node:

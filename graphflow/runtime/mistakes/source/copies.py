@@ -10,7 +10,7 @@ from functools import cache
 from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, syntax_of
+from graphflow.analysis.syntax import FunctionNode, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import Place
 from graphflow.runtime.mistakes.source.shadowing import definition_of
@@ -67,14 +67,14 @@ def _copies(definition: ast.ClassDef, name: str) -> list[tuple[str, int]]:
     """Return the attributes, with lines, that are set once, from the declaration of a parameter, and used later."""
     found: list[tuple[str, int]] = []
     methods = [item for item in definition.body if isinstance(item, FunctionNode)]
-    stores = [n.attr for n in ast.walk(definition) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)]
+    stores = [n.attr for n in nodes_in(definition) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)]
     used = {
         node.attr
         for method in methods
-        for node in (ast.walk(method) if method.name not in _FIRST else ())
+        for node in (nodes_in(method) if method.name not in _FIRST else ())
         if isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load) and is_own(node)
     }
-    for statement in (node for method in methods if method.name in _FIRST for node in ast.walk(method)):
+    for statement in (node for method in methods if method.name in _FIRST for node in nodes_in(method)):
         match statement:
             case ast.Assign(
                 targets=[ast.Attribute(value=ast.Name(id="self"), attr=attribute)],

@@ -13,7 +13,7 @@ from contextlib import suppress
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.class_source import ClassSource, Unknown
-from graphflow.analysis.syntax import walk
+from graphflow.analysis.syntax import nodes_in, walk
 from graphflow.runtime.declarations import declared
 
 _MISSING = object()
@@ -29,7 +29,7 @@ def early_waits(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]
         if not isinstance(method, ast.AsyncFunctionDef) or method.name != "on_start":
             continue
         if any(
-            node.attr.startswith(("create_", "spawn")) for node in ast.walk(method) if isinstance(node, ast.Attribute)
+            node.attr.startswith(("create_", "spawn")) for node in nodes_in(method) if isinstance(node, ast.Attribute)
         ):
             continue  # it may start what ends the wait
         for node, _ in walk(method, into_functions=False):

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.class_source import ClassSource, Unknown
-from graphflow.analysis.syntax import last_name, walk
+from graphflow.analysis.syntax import last_name, nodes_in, walk
 
 
 class _Kind(NamedTuple):
@@ -53,7 +53,7 @@ def has_attribute(module: ast.Module, name: str, outside: ast.ClassDef | None = 
     """Whether a file mentions an attribute of a name, perhaps only outside of a class."""
     lines = range(outside.lineno, (outside.end_lineno or 0) + 1) if outside is not None else ()
     return any(
-        isinstance(node, ast.Attribute) and node.attr == name and node.lineno not in lines for node in ast.walk(module)
+        isinstance(node, ast.Attribute) and node.attr == name and node.lineno not in lines for node in nodes_in(module)
     )
 
 
@@ -116,4 +116,4 @@ def _value(expression: ast.expr | None) -> object:
 
 
 def _may_leave(loop: ast.While) -> bool:
-    return any(isinstance(node, (ast.Break, ast.Return, ast.Raise)) for node in ast.walk(loop))
+    return any(isinstance(node, (ast.Break, ast.Return, ast.Raise)) for node in nodes_in(loop))

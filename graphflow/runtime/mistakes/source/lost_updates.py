@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.bindings import bindings_of
-from graphflow.analysis.syntax import FunctionNode, walk
+from graphflow.analysis.syntax import FunctionNode, nodes_in, walk
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Group
 from graphflow.runtime.declarations.handlers import Handler
@@ -111,7 +111,7 @@ def _other(
         if other == name or is_exclusive:
             continue
         for statement in method.body:
-            if any(isinstance(node, (ast.Return, ast.Raise, ast.Await)) for node in ast.walk(statement)):
+            if any(isinstance(node, (ast.Return, ast.Raise, ast.Await)) for node in nodes_in(statement)):
                 break
             if isinstance(statement, ast.AugAssign) and _is(statement.target, attribute):
                 return other, statement.lineno
@@ -164,16 +164,16 @@ def _in_block(block: Sequence[ast.stmt], attribute: str) -> Iterator[_Write]:
                     old[name] = since
                     copies |= {name} if _is(value, attribute) else set()
                 continue
-        if any(_is(node, attribute) for node in ast.walk(statement)):
+        if any(_is(node, attribute) for node in nodes_in(statement)):
             old.clear()  # the attribute is looked at again
-        stored = {n.id for n in ast.walk(statement) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
+        stored = {n.id for n in nodes_in(statement) if isinstance(n, ast.Name) and not isinstance(n.ctx, ast.Load)}
         awaited = _first_await(statement)
         old = {known: line or (awaited.lineno if awaited else 0) for known, line in old.items() if known not in stored}
 
 
 def _awaited(value: ast.expr, attribute: str, old: dict[str, int]) -> int | None:
     """Return the line of the `await` between a read of an attribute and the use of the value; None if there is none."""
-    if any(_is(node, attribute) for node in ast.walk(value)):
+    if any(_is(node, attribute) for node in nodes_in(value)):
         return _since(value, attribute, {}) or None
     return _since(value, attribute, old) or None
 

@@ -7,7 +7,7 @@ import sys
 from functools import cache
 from typing import NamedTuple
 
-from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.syntax import nodes_in, syntax_of
 from graphflow.errors import Place
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 
@@ -40,7 +40,7 @@ def _exchanged(cls: type, definition: ast.ClassDef, file: str) -> list[Exchanged
         match [*tops]:
             case [ast.ClassDef(name=other)] if other != definition.name:
                 setter = getattr(sys.modules.get(cls.__module__), other, None)
-                uses = [n for n in ast.walk(definition) if isinstance(n, ast.Name) and n.id in (name, other)]
+                uses = [n for n in nodes_in(definition) if isinstance(n, ast.Name) and n.id in (name, other)]
                 if not isinstance(setter, type) or {*cls.__mro__} & {*setter.__mro__} == {object}:
                     continue
                 if uses and all(use.id == name for use in uses):

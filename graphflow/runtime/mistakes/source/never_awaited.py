@@ -10,7 +10,7 @@ import inspect
 from collections.abc import Iterator, Mapping
 
 from graphflow.analysis.attribute_uses import is_own, is_super
-from graphflow.analysis.syntax import FunctionNode
+from graphflow.analysis.syntax import FunctionNode, nodes_in
 from graphflow.executor.clock import Clock
 from graphflow.runtime.actions.client import GoalClient
 from graphflow.runtime.declarations import declared
@@ -40,10 +40,10 @@ def never_awaited(
         definition: The class statement.
         space: The names of its module.
     """
-    replaced = {n.attr for n in ast.walk(definition) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)}
+    replaced = {n.attr for n in nodes_in(definition) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store)}
     for method in definition.body:
         own = _local(method) if isinstance(method, FunctionNode) else set()
-        for node in ast.walk(method):
+        for node in nodes_in(method):
             match node:
                 case ast.Expr(value=ast.Call(func=function) as call):
                     called = _called(function, cls, parent, {k: v for k, v in space.items() if k not in own})
@@ -70,12 +70,12 @@ def _called(function: ast.expr, cls: type, parent: type, space: dict[str, object
 
 def _local(method: FunctionNode) -> set[str]:
     """Return the names that a method binds itself."""
-    found = {node.arg for node in ast.walk(method) if isinstance(node, ast.arg)}
-    found |= {node.id for node in ast.walk(method) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)}
+    found = {node.arg for node in nodes_in(method) if isinstance(node, ast.arg)}
+    found |= {node.id for node in nodes_in(method) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)}
     found |= {
         alias.asname or alias.name
-        for node in ast.walk(method)
+        for node in nodes_in(method)
         if isinstance(node, ast.Import | ast.ImportFrom)
         for alias in node.names
     }
-    return found | {node.name for node in ast.walk(method) if isinstance(node, FunctionNode | ast.ClassDef)}
+    return found | {node.name for node in nodes_in(method) if isinstance(node, FunctionNode | ast.ClassDef)}

@@ -8,7 +8,7 @@ from typing import NamedTuple, get_args
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.bindings import Bindings, bindings_of
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 from graphflow.interface import Parameter
 from graphflow.names import did_you_mean, nearest
 from graphflow.runtime.declarations import declared
@@ -39,7 +39,7 @@ def never_equal(cls: type, owner: type, definition: ast.ClassDef, module: ast.Mo
     declarations, own = declared.declarations(cls), declared.declarations(owner)
     # A subclass may declare the parameter anew, with other choices.
     params = {k: v.parameter for k, v in declarations.items() if isinstance(v, Param) and own.get(k) is v}
-    words = {node.attr for node in ast.walk(definition) if isinstance(node, ast.Attribute)}
+    words = {node.attr for node in nodes_in(definition) if isinstance(node, ast.Attribute)}
     if words.isdisjoint({*params, "parameters", "status", "lifecycle_state", "kind"}):
         return
     bindings = bindings_of(module)

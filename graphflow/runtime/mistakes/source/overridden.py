@@ -10,7 +10,7 @@ import ast
 from collections.abc import Iterator
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode
+from graphflow.analysis.syntax import FunctionNode, nodes_in
 from graphflow.analysis.user_code import short_place
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Subscription
@@ -75,7 +75,7 @@ def _is_heard(cls: type, lost: Handler) -> bool:
 
 def _calls_parent(definition: ast.ClassDef, name: str, parents: set[str]) -> bool:
     """Whether a class refers to its parent's method, as in `super().heard` or `Base.heard`."""
-    for node in ast.walk(definition):
+    for node in nodes_in(definition):
         match node:
             case ast.Attribute(value=ast.Call(func=ast.Name("super")), attr=attr) if attr == name:
                 return True
@@ -96,5 +96,5 @@ def _does_the_same(method: FunctionNode, owner: type) -> bool:
 
 def _sets(method: FunctionNode) -> set[str]:
     """Return the node's attributes that a method sets."""
-    found = (n for n in ast.walk(method) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store))
+    found = (n for n in nodes_in(method) if isinstance(n, ast.Attribute) and isinstance(n.ctx, ast.Store))
     return {node.attr for node in found if is_own(node)}

@@ -9,7 +9,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from graphflow.analysis.syntax import last_name, syntax_of
+from graphflow.analysis.syntax import last_name, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_installed
 from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
@@ -42,7 +42,7 @@ def words_in(module: ast.Module) -> set[str]:
     """Return the attributes and names that a module reads, and its strings, but for texts that are only shown."""
     found: set[str] = set()
     shown: set[ast.expr] = set()
-    for node in ast.walk(module):
+    for node in nodes_in(module):
         match node:
             case ast.Call(func=function, args=arguments) if last_name(function) in _SHOWING:
                 shown.update(arguments)

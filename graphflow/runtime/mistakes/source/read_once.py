@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from functools import cache
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import NESTED, FunctionNode, syntax_of, walk
+from graphflow.analysis.syntax import NESTED, FunctionNode, nodes_in, syntax_of, walk
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import Place
 from graphflow.runtime.callables import file_of
@@ -95,7 +95,7 @@ def _body_names(definition: ast.ClassDef) -> set[str]:
     parts: list[ast.AST] = []
     for item in definition.body:
         parts += [*item.decorator_list, item.args] if isinstance(item, FunctionNode) else [item]
-    return {n.id for part in parts for n in ast.walk(part) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+    return {n.id for part in parts for n in nodes_in(part) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
 
 
 def _is_used(file: str, attribute: str, name: str, known: set[ast.AST]) -> bool:
@@ -115,5 +115,5 @@ def _mentions(module: ast.Module, attribute: str, name: str) -> bool:
     return any(
         (isinstance(node, ast.Attribute) and node.attr == attribute)
         or (isinstance(node, ast.Constant) and node.value in (attribute, name))
-        for node in ast.walk(module)
+        for node in nodes_in(module)
     )

@@ -16,7 +16,7 @@ from functools import cache
 from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, syntax_of, walk
+from graphflow.analysis.syntax import FunctionNode, nodes_in, syntax_of, walk
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import Place
 from graphflow.runtime.mistakes.source.project_words import other_modules
@@ -162,5 +162,5 @@ def _is_reached(name: str, sources: Iterable[tuple[type, ast.ClassDef, str]]) ->
     return any(
         isinstance(node, ast.Attribute) and node.attr == name and ast.unparse(node.value).rpartition(".")[2] in classes
         for module in modules
-        for node in ast.walk(module)
+        for node in nodes_in(module)
     )

@@ -16,7 +16,7 @@ from functools import cache
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.mistakes import native_source
-from graphflow.analysis.syntax import FunctionNode, syntax_of
+from graphflow.analysis.syntax import FunctionNode, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import Place
 from graphflow.names import nearest
@@ -156,7 +156,7 @@ def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, o
     """Find declarations that a method replaces by setting a class attribute instead of the node's."""
     names = declared.declarations(cls)
     for method in definition.body:
-        for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
+        for node in nodes_in(method) if isinstance(method, FunctionNode) else ():
             match node:
                 case ast.Attribute(value=owner, attr=name, ctx=ast.Store()) if name in names:
                     if resolved(owner, space) in cls.__mro__ or ast.unparse(owner) in _OWN_CLASS:
@@ -172,7 +172,7 @@ def _changed_in_place(cls: type, definition: ast.ClassDef, file: str) -> Iterato
         if isinstance(p, Param) and p.parameter.type.startswith("list[")
     }
     for method in definition.body:
-        for node in ast.walk(method) if isinstance(method, FunctionNode) else ():
+        for node in nodes_in(method) if isinstance(method, FunctionNode) else ():
             match node:
                 case (
                     ast.Call(func=ast.Attribute(value=ast.Attribute(attr=name) as changed, attr=way))

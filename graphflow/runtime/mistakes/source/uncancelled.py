@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from graphflow.analysis.syntax import nodes_in
 from graphflow.runtime.declarations import declared
 
 _LOOPS = (ast.While, ast.For)
@@ -17,7 +18,7 @@ def uncancelled(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]
         handler = handlers.get(method.name) if isinstance(method, ast.FunctionDef) else None
         if handler is None or not isinstance(method, ast.FunctionDef) or handler.kind != "action" or not handler.thread:
             continue
-        nodes = list(ast.walk(method))
+        nodes = nodes_in(method)
         loop = next((node for node in nodes if isinstance(node, _LOOPS)), None)
         if loop is None or len(method.args.args) < 2:
             continue

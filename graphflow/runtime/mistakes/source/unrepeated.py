@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import last_name
+from graphflow.analysis.syntax import last_name, nodes_in
 from graphflow.runtime.declarations import declared
 
 _LOOPS = (ast.While, ast.For, ast.AsyncFor)
@@ -15,7 +15,7 @@ def unrepeated(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]]
     """Find the tasks of a class that have no loop and end with a sleep; each comes with a sentence."""
     handlers = declared.handlers(cls)
     for method in definition.body:
-        if not isinstance(method, ast.AsyncFunctionDef) or any(isinstance(node, _LOOPS) for node in ast.walk(method)):
+        if not isinstance(method, ast.AsyncFunctionDef) or any(isinstance(node, _LOOPS) for node in nodes_in(method)):
             continue
         handler = handlers.get(method.name)
         if handler is None or handler.kind != "task":

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode
+from graphflow.analysis.syntax import FunctionNode, nodes_in
 from graphflow.analysis.user_code import short_place
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 
@@ -18,7 +18,7 @@ def without_super(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, st
     for method in definition.body:
         if not isinstance(method, FunctionNode) or method.name not in _HOOKS:
             continue
-        if any(isinstance(node, ast.Attribute) and node.attr == method.name for node in ast.walk(method)):
+        if any(isinstance(node, ast.Attribute) and node.attr == method.name for node in nodes_in(method)):
             continue  # it calls its parent's
         parent = next((base for base in cls.__mro__[1:] if method.name in vars(base)), None)
         source = definition_of(parent) if parent is not None else None
@@ -44,7 +44,7 @@ def _methods(definition: ast.ClassDef) -> Iterator[ast.FunctionDef | ast.AsyncFu
 def _attributes(code: ast.AST, context: type[ast.expr_context]) -> set[str]:
     return {
         node.attr
-        for node in ast.walk(code)
+        for node in nodes_in(code)
         if isinstance(node, ast.Attribute) and is_own(node) and isinstance(node.ctx, context)
     }
 

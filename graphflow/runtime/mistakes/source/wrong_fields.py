@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator, Mapping
 from types import ModuleType
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 from graphflow.errors import EncodeError, Place
 from graphflow.msgs.base import Message, no_field
 from graphflow.runtime.declarations.handlers import Handler
@@ -33,7 +33,7 @@ def wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space
 def flags_of(cls: type, definition: ast.ClassDef) -> set[str]:
     """Return the attributes of a class that are true or false at first."""
     found = {name for name, value in vars(cls).items() if isinstance(value, bool)}
-    for node in ast.walk(definition):
+    for node in nodes_in(definition):
         match node:
             case ast.Assign(targets=[ast.Attribute(attr=name) as flag], value=ast.Constant(value=bool())):
                 found |= {name} if is_own(flag) else set()
@@ -50,7 +50,7 @@ def whole_messages(
         handler: What the class declares the method to be.
     """
     received = _received(method, handler, space)
-    for node in ast.walk(method):
+    for node in nodes_in(method):
         match node:
             case ast.Assign(targets=[ast.Attribute(attr=flag) as target], value=ast.Name(id=name)) if flag in flags:
                 for type_ in received.get(name, ()):
@@ -85,7 +85,7 @@ def _meanings(
 ) -> Counter[str]:
     """Count the meanings of each name beside messages that are assigned to it, which are added to `bound`."""
     times: Counter[str] = Counter()
-    for node in ast.walk(method):
+    for node in nodes_in(method):
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 bound.setdefault(name, set()).add(_type_made(value, space))
@@ -98,7 +98,7 @@ def _meanings(
             ):
                 times[name] += 1
             case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.Lambda() if node is not method:
-                times.update(argument.arg for argument in ast.walk(node.args) if isinstance(argument, ast.arg))
+                times.update(argument.arg for argument in nodes_in(node.args) if isinstance(argument, ast.arg))
             case ast.Call(func=ast.Name(id="isinstance" | "hasattr"), args=[ast.Name(id=name), *_]):
                 times[name] += 1  # its type is looked at
     return times
@@ -169,11 +169,11 @@ def _expects(parent: ast.AST, message: ast.expr) -> bool:
     if not isinstance(parent, ast.Try):
         return False
     is_plain = len(parent.body) == 1 and isinstance(parent.body[0], (ast.Assign, ast.AnnAssign, ast.Expr, ast.Return))
-    root = next(node.id for node in ast.walk(message) if isinstance(node, ast.Name))
+    root = next(node.id for node in nodes_in(message) if isinstance(node, ast.Name))
     for handler in parent.handlers:
         caught = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
         names = {"BaseException" if c is None else last_name(c) for c in caught}
-        reads = any(isinstance(node, ast.Name) and node.id == root for s in handler.body for node in ast.walk(s))
+        reads = any(isinstance(node, ast.Name) and node.id == root for s in handler.body for node in nodes_in(s))
         if "AttributeError" in names or ((is_plain or reads) and names & {"Exception", "BaseException"}):
             return True
     return False

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 from graphflow.interface import Parameter
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import ActionClient, Client, Param
@@ -24,7 +24,7 @@ _WAITS = ("call", "send", "send_goal", "wait_ready")
 
 def _as_radians(method: ast.AST) -> Iterator[ast.expr]:
     """Yield the values that are taken for radians: of sines, of a Twist's `angular`, and of keywords for angles."""
-    for node in ast.walk(method):
+    for node in nodes_in(method):
         match node:
             case ast.Call(func=ast.Attribute(attr="sin" | "cos" | "tan"), args=[value]):
                 yield value
@@ -52,7 +52,7 @@ def wrong_units(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str]
     }
     yield from _degrees(definition, params)
     clients = {f"self.{name}" for name, item in declarations.items() if isinstance(item, (Client, ActionClient))}
-    calls = [n for m in definition.body if params and isinstance(m, FunctionNode) for n in ast.walk(m)]
+    calls = [n for m in definition.body if params and isinstance(m, FunctionNode) for n in nodes_in(m)]
     for call in calls:
         if not isinstance(call, ast.Call):
             continue

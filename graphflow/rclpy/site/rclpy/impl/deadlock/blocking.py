@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from graphflow.analysis.class_source import Unknown
 from graphflow.analysis.frames import Frame, stack_from
+from graphflow.analysis.syntax import nodes_in
 from graphflow.analysis.user_code import is_users
 from rclpy.action.client import ActionClient
 from rclpy.client import Client
@@ -142,13 +143,13 @@ def _loop_around(frame: Frame) -> ast.While | None:
         function = function_of(frame)
     except Unknown:
         return None
-    loops = [n for n in ast.walk(function) if isinstance(n, ast.While) and _spans(n, frame.f_lineno)]
+    loops = [n for n in nodes_in(function) if isinstance(n, ast.While) and _spans(n, frame.f_lineno)]
     return loops[-1] if loops else None
 
 
 def _polled_object(test: ast.expr) -> Iterator[ast.expr]:
     """Return the object whose `done()` a condition calls."""
-    for node in ast.walk(test):
+    for node in nodes_in(test):
         match node:
             case ast.Call(func=ast.Attribute(value=owner, attr="done"), args=[]):
                 yield owner
@@ -165,13 +166,13 @@ def _is_only_exit(loop: ast.While) -> bool:
     is_both = isinstance(loop.test, ast.BoolOp) and isinstance(loop.test.op, ast.And)
     parts = loop.test.values if is_both else [loop.test]  # type: ignore[attr-defined]
     others = [part for part in parts if not ast.unparse(part).endswith("ok()") and not [*_polled_object(part)]]
-    nested = [node for part in parts for node in ast.walk(part) if isinstance(node, ast.BoolOp)]
+    nested = [node for part in parts for node in nodes_in(part) if isinstance(node, ast.BoolOp)]
     return not (others or nested or _leaves(loop.body))
 
 
 def _leaves(body: list[ast.stmt]) -> bool:
     """Whether statements may leave their loop."""
-    return any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for statement in body for n in ast.walk(statement))
+    return any(isinstance(n, (ast.Break, ast.Return, ast.Raise)) for statement in body for n in nodes_in(statement))
 
 
 def _future(expression: ast.expr, frame: Frame) -> Future | None:
@@ -192,7 +193,7 @@ def _value(expression: ast.expr, frame: Frame) -> object:
 def _polled_client(frame: Frame) -> Client | ActionClient | None:
     """Return the client whose server the innermost loop around a line waits for."""
     loop = _loop_around(frame)
-    for node in ast.walk(loop.test) if loop is not None and tries_forever(frame) else ():
+    for node in nodes_in(loop.test) if loop is not None and tries_forever(frame) else ():
         match node:
             case ast.Call(func=ast.Attribute(value=owner, attr="service_is_ready" | "server_is_ready")):
                 found = _value(owner, frame)

@@ -9,7 +9,7 @@ from functools import cache
 from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, Syntax, syntax_of
+from graphflow.analysis.syntax import FunctionNode, Syntax, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_installed, is_users
 from rclpy.task import Future
 
@@ -91,7 +91,7 @@ def _endings_in(syntax: Syntax) -> Iterator[_Ending]:
 def _is_other_object(owner: ast.Name | ast.Attribute, scopes: Iterable[ast.AST]) -> bool:
     """Whether a name or attribute is not an answer's future, judged by its constructor or else by its name."""
     word = ast.unparse(owner)
-    made = (n for scope in scopes for n in ast.walk(scope) if isinstance(n, ast.Assign | ast.AnnAssign) and n.value)
+    made = (n for scope in scopes for n in nodes_in(scope) if isinstance(n, ast.Assign | ast.AnnAssign) and n.value)
     values = [
         n.value
         for n in made

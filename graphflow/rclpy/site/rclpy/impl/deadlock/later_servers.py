@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from graphflow.analysis.class_source import Unknown, source_of
 from graphflow.analysis.frames import Frame
-from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
+from graphflow.analysis.syntax import FunctionNode, first_line, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users, short_place
 from graphflow.deadlock.closed_world.wakers import handlers_above
 from graphflow.deadlock.protocols import Subject
@@ -120,7 +120,7 @@ def tries_forever(frame: Frame) -> bool:
         for syntax in _syntaxes(frame.f_code.co_filename)
         for function in (*syntax.functions, syntax.module)
         if _code_line(function) == frame.f_code.co_firstlineno
-        for node in ast.walk(function)
+        for node in nodes_in(function)
         if isinstance(node, ast.While) and node.lineno <= frame.f_lineno <= (node.end_lineno or 0)
     ]
     return bool(loops) and _is_endless(loops[-1])
@@ -134,7 +134,7 @@ def _is_endless(loop: ast.While) -> bool:
         node
         for statement in loop.body
         if not (isinstance(statement, ast.If) and "ok()" in ast.unparse(statement.test))
-        for node in ast.walk(statement)
+        for node in nodes_in(statement)
         if isinstance(node, (ast.Break, ast.Return, ast.Raise))
     ]
     return len(waits) == 1 and not others and not leaving

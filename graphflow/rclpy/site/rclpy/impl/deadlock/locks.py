@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from graphflow.analysis.class_source import Unknown
 from graphflow.analysis.frames import Frame
-from graphflow.analysis.syntax import Syntax, first_line, syntax_of, walk
+from graphflow.analysis.syntax import Syntax, first_line, nodes_in, syntax_of, walk
 from graphflow.analysis.user_code import is_users
 
 _LOCKS = (type(threading.Lock()), type(threading.RLock()))
@@ -92,7 +92,7 @@ def is_kept(entering: Entering, frames: Iterable[Frame]) -> bool:
 def _is_let_go(syntax: Syntax, name: str) -> bool:
     """Whether a lock of that name is released without having been acquired there, or used in any other way."""
     for function in syntax.functions:
-        called = [call.func for call in ast.walk(function) if isinstance(call, ast.Call)]
+        called = [call.func for call in nodes_in(function) if isinstance(call, ast.Call)]
         ways = [(way.attr, ast.unparse(way.value)) for way in called if isinstance(way, ast.Attribute)]
         entered = {ast.unparse(expression) for _, expression in _entries(function)}
         released = {text for attr, text in ways if attr == "release" and text.rpartition(".")[2] == name}
@@ -115,14 +115,14 @@ def _is_in_body(frame: Frame, block: ast.With) -> bool:
 
 def _entries(function: ast.AST) -> Iterator[tuple[ast.With, ast.expr]]:
     """Yield what is entered with `with`."""
-    for block in ast.walk(function):
+    for block in nodes_in(function):
         if isinstance(block, ast.With):
             yield from ((block, item.context_expr) for item in block.items)
 
 
 def _calls(function: ast.AST, way: str) -> Iterator[tuple[ast.expr, ast.Call]]:
     """Yield the objects whose `acquire()` or `release()` is called, as a statement and without arguments."""
-    for statement in ast.walk(function):
+    for statement in nodes_in(function):
         match statement:
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr=attr), args=[], keywords=[]) as call):
                 if attr == way:

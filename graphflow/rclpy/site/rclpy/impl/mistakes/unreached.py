@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.mistakes.calls.called_early import spins_called
-from graphflow.analysis.syntax import FunctionNode, first_line, syntax_of
+from graphflow.analysis.syntax import FunctionNode, first_line, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_ours, is_users, short_place
 from graphflow.reading import found_text
 from rclpy.action.client import ActionClient
@@ -145,7 +145,7 @@ def _after(function: ast.AST, line: int) -> tuple[ast.Call | None, list[ast.stmt
         inner = next((b for b in _blocks(statement) if b[0].lineno <= line <= (b[-1].end_lineno or 0)), None)
         if inner is None:
             calls = [
-                n for n in ast.walk(statement) if isinstance(n, ast.Call) and n.lineno <= line <= (n.end_lineno or 0)
+                n for n in nodes_in(statement) if isinstance(n, ast.Call) and n.lineno <= line <= (n.end_lineno or 0)
             ]
             return next(iter(calls), None), list(_until_end(later))
         if isinstance(statement, (ast.Try, ast.TryStar)):
@@ -180,7 +180,7 @@ def _may_be_ended(file: str, function: ast.AST) -> bool:
 
 def _late_calls(statement: ast.stmt, frame: Frame) -> Iterator[_Late]:
     """Yield the calls in a statement that need other nodes, or that create a node."""
-    calls = [node for node in ast.walk(statement) if isinstance(node, ast.Call)]
+    calls = [node for node in nodes_in(statement) if isinstance(node, ast.Call)]
     for call in sorted(calls, key=lambda c: (c.lineno, c.col_offset)):
         name = ast.unparse(call.func).rpartition(".")[2]
         thing = _resolved(call.func, frame)
