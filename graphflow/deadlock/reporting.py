@@ -12,7 +12,7 @@ through some of the same members.
 from __future__ import annotations
 
 import logging
-from collections.abc import Hashable, Mapping
+from collections.abc import Collection, Hashable, Mapping
 from functools import partial
 from types import MappingProxyType
 from typing import NamedTuple
@@ -86,6 +86,8 @@ class Reporter:
         """Deadlocks that this process has reported and that still exist."""
         self.foreign: dict[Ring, Foreign] = {}
         """Deadlocks that other processes report."""
+        self._left: dict[Ring, str] = {}
+        """Deadlocks that concern this process, be it as a victim, and that it has left to others to report."""
         self._loosened: dict[Ring, int] = {}
         """By foreign deadlock: time at which its waits here were first seen to have ended, in nanoseconds."""
         self._is_watching = False
@@ -133,6 +135,7 @@ class Reporter:
         # A process whose loop is blocked cannot see the others, so it reports only if all of them are blocked.
         reporter = reporters.get(known) or min(processes - set(graph.blocked) or processes)
         if reporter != mine:
+            self._left[known] = reporter
             if known not in {*self._behind, *elsewhere}:
                 key = answer_key(self._process.domain, LOOK, reporter)
                 self._process.session.ask_reports(key, PULL_LIMIT, _ignore)
@@ -148,6 +151,15 @@ class Reporter:
         for victim in sorted(victims - self._behind.setdefault(known, set())):
             logger.warning("%s waits behind the deadlock of %s", victim, who)
         self._behind[known] |= victims
+
+    def left_to_silent(self, answered: Collection[str]) -> dict[Ring, str]:
+        """Return the deadlocks that were left to processes that exist and have not answered now, with the process.
+
+        Without those processes' waits, another ring through the same members looks like a deadlock of its own.
+        """
+        silent = {entity.zid for entity in self._process.cache}.difference(answered)
+        self._left = {ring: reporter for ring, reporter in self._left.items() if reporter in silent}
+        return self._left.copy()
 
     def _note_foreign(self, ring: Ring, core: list[ActivityView], reporter: str) -> None:
         """Log, once, where to read the report of a deadlock that another process reports."""

@@ -257,8 +257,13 @@ class Search:
         """Ask all processes; `receive` gets the replies so far, and whether there will be no more."""
         if self._is_closed:
             return
+
+        def told(replies: list[bytes], is_all: bool) -> None:
+            if not self._is_closed:  # meanwhile
+                receive(replies, is_all)
+
         self.pulls += 1
-        self._process.session.ask_reports(answer_key(self._process.domain, WAITS), PULL_LIMIT, receive)
+        self._process.session.ask_reports(answer_key(self._process.domain, WAITS), PULL_LIMIT, told)
 
     def _joint(self, replies: list[bytes]) -> Round:
         """Merge the snapshots of the processes that answered with this one's."""
@@ -286,8 +291,9 @@ class Search:
     def _conclude(self, before: WaitGraph, now: Round) -> None:
         """Report the deadlocks that both rounds show."""
         self._dead = deadlocked(now.graph, before)
+        reported = self._reporter.left_to_silent(now.answered) | now.reported
         for deadlock in explained(now.graph, self._dead):
-            self._reporter.report(deadlock, now.graph, now.reported)
+            self._reporter.report(deadlock, now.graph, reported)
         if self.reports:  # probe again soon, to report their end
             self._schedule(min(self._period, 2 * PROBE_AFTER))
 

@@ -10,9 +10,10 @@ from graphflow.deadlock.reporting import Reporter, is_old, lines_of
 from graphflow.machines.waits.reduction import deadlocked
 from graphflow.machines.waits.rings import Deadlock, explained
 from graphflow.machines.waits.wait_graph import FREE, WaitGraph
+from graphflow.wire.liveliness import Entity, Kind
 from tests.deadlock.cast import Caplog
 from tests.deadlock.stage import Stage
-from tests.machines.pictures import circle, run
+from tests.machines.pictures import call, circle, group, picture, queue, run
 
 
 def ring_of(stage: Stage, *, own: int, other: str) -> tuple[WaitGraph, Deadlock]:
@@ -72,6 +73,49 @@ async def test_the_lowest_id_reports(graphflow_runner: asyncio.Runner, caplog: C
     assert reporter.reports == {}
     [foreign] = reporter.foreign.values()
     assert (foreign.reporter, foreign.processes) == ("", {"", stage.session.zid})
+
+
+async def test_the_reporter_does_not_answer(graphflow_runner: asyncio.Runner, caplog: Caplog) -> None:
+    """Without its waits, another ring through a member of its deadlock is no new one; once it has gone, it is."""
+    stage = Stage()
+    reporter, mine = Reporter(stage, "report"), stage.session.zid
+    server = Entity(0, "0abc", 0, 1, Kind.SERVICE, "/", "other", "/answer", "std_srvs/srv/Empty", "x")
+    stage.cache.apply(server.token, alive=True)
+    graph, deadlock = ring_of(stage, own=1, other="0abc")
+    reporter.report(deadlock, graph)
+    caplog.clear()
+    left = reporter.left_to_silent({mine})
+    assert left == {frozenset({"tick0", "tick1"}): "0abc"}
+
+    without = picture(
+        replace(run("tick0", call("to9"), holds="g0"), process=mine, age=1.0),
+        replace(run("tick9", call("to0"), holds="g9"), process=mine, age=1.0),
+        group("g0"),
+        group("g9"),
+        queue("service0", "g0", "to0"),
+        queue("service9", "g9", "to9"),
+    )
+    [another] = explained(without, deadlocked(without))
+    reporter.report(another, without, left)
+    assert caplog.messages == ["timer tick9 of /node waits behind the deadlock of timer tick0 of /node"]
+    caplog.clear()
+
+    stage.cache.apply(server.token, alive=False)
+    assert reporter.left_to_silent({mine}) == {}
+    reporter.report(another, without)
+    assert caplog.messages[0].startswith("DEADLOCK: 2 callbacks wait for each other in a ring")
+
+
+async def test_the_reporter_answers(graphflow_runner: asyncio.Runner) -> None:
+    """What it reports is known from its answer alone."""
+    stage = Stage()
+    reporter = Reporter(stage, "report")
+    server = Entity(0, "0abc", 0, 1, Kind.SERVICE, "/", "other", "/answer", "std_srvs/srv/Empty", "x")
+    stage.cache.apply(server.token, alive=True)
+    graph, deadlock = ring_of(stage, own=1, other="0abc")
+    reporter.report(deadlock, graph)
+    assert reporter.left_to_silent({stage.session.zid, "0abc"}) == {}
+    assert reporter.left_to_silent({stage.session.zid}) == {}
 
 
 async def test_a_foreign_deadlock_is_forgotten_late(graphflow_runner: asyncio.Runner) -> None:
