@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import click
@@ -31,12 +31,15 @@ def choices(words: Sequence[str], partial: str) -> list[str]:
     if isinstance(command, click.Group):
         names = command.list_commands(context)
         found: Iterable[str] = [] if rest else [n for n in names if not _is_hidden(command, context, n)]
+        found = {*found, *(_launched_by(rest) if command.name == "launch" else ())}
         return sorted(name for name in found if name.startswith(partial))
     if partial.startswith("-"):
         return sorted(option for option in _options(command) if option.startswith(partial))
     what, given = _expected(command, rest)
     if (command.name, len(given)) in (("run", 0), ("run", 1)) or (what == "PACKAGE" and command.name in PACKAGED):
-        return sorted(name for name in _started_by(given) if name.startswith(partial))
+        return sorted(name for name in _started_by(given, command.name) if name.startswith(partial))
+    if what.startswith("GRAPH.yaml") and not given:
+        return sorted(name for name in {*_graphs(), *_files(partial)} if name.startswith(partial))
     mark = partial[:1] if partial[:1] in ("'", '"') else ""
     try:
         found = _names_for(what, given, mark or "'")
@@ -126,13 +129,45 @@ def _names_for(place: str, given: Sequence[str], mark: str) -> Iterable[str]:
     return _types() if word == "TYPE" and not plain else plain
 
 
-def _started_by(given: Sequence[str]) -> set[str]:
-    """Return the packages that have executables or, given a package, its executables."""
-    from graphflow.workspace.executables import all_executables
+def _started_by(given: Sequence[str], verb: str | None) -> set[str]:
+    """Return the packages that have executables or, given a package, its executables; for `run`, nodes by name, too."""
+    from graphflow.workspace.executables import all_executables, project_packages
     from graphflow.workspace.project import project_root
 
-    rows = all_executables(project_root(Path.cwd()))
-    return {row.name for row in rows if row.package == given[0]} if given else {row.package for row in rows}
+    root = project_root(Path.cwd())
+    rows = all_executables(root)
+    if given:
+        return {row.name for row in rows if row.package == given[0]}
+    own = {*project_packages(root)} if verb == "run" else set[str]()
+    return {row.package for row in rows} | {row.name for row in rows if row.package in own}
+
+
+def _launched_by(given: Sequence[str]) -> set[str]:
+    """Return the packages that have launch files or, given a package, its launch files."""
+    from graphflow.cli.ros.launch import launch_files
+    from graphflow.workspace.packages import bundled, find_workspace
+
+    if given:
+        return set() if len(given) > 1 else {*launch_files(given[0])}
+    packages = {*find_workspace(Path.cwd()).packages, *bundled().packages}
+    return {name for name in packages if launch_files(name)}
+
+
+def _graphs() -> set[str]:
+    """Return the names of the graphs that `up` finds without a path."""
+    from graphflow.workspace import installed
+    from graphflow.workspace.project import bundled_graphs, project_root
+
+    own = {file.stem for file in (project_root(Path.cwd()) / "graphs").glob("*.yaml")}
+    return {*own, *installed.graphs(), *bundled_graphs()}
+
+
+def _files(partial: str) -> Iterator[str]:
+    """Yield the graph files, and the folders that may have some, whose path begins so."""
+    head, slash, _ = partial.rpartition("/")
+    for entry in Path(head + slash).glob("*"):
+        if entry.suffix in (".yaml", ".yml") or entry.is_dir():
+            yield f"{head}{slash}{entry.name}{'/' if entry.is_dir() else ''}"
 
 
 def _types() -> list[str]:

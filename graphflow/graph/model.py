@@ -288,6 +288,8 @@ class NodeSpec(_Settings):
         if not isinstance(data, dict):
             return data
         has = {key for key in data if data[key] is not None}
+        if has & {"package", "executable"}:  # unknown keys, for which others may be missing
+            return {"class": NO_CLASS, **data}
         if "command" in has:
             _refuse(OF_NODES, has)
             data = {k: v for k, v in data.items() if not k.endswith(FROM_GROUPS)}
@@ -308,9 +310,6 @@ def _refuse(keys: Iterable[str], has: Collection[str]) -> None:
 
 def _check_executable(data: Mapping[str, object], has: Collection[str]) -> None:
     is_file = "/" in str(data.get("exec")) or str(data.get("exec")).endswith(".py")
-    for former, key in (("package", "pkg"), ("executable", "exec")):
-        if former in has and key not in has:
-            raise ValueError(f"unknown key {former!r}; it is called {key!r} here")
     if data.get("exec") in (None, "") or ("pkg" not in has and not is_file):
         raise ValueError("an executable has both: pkg: PACKAGE and exec: NAME; or exec: is a file")
     if "class" in has:

@@ -9,6 +9,7 @@ from graphflow.reading import found_text
 from graphflow.workspace.packages import Folder, Package, Workspace, folders, workspace_around
 
 _BUILT = ("setup.py", "CMakeLists.txt")
+_LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
 _NEEDED = 'to make it a package, write in it: <package format="3"><name>{name}</name></package>'
 
 
@@ -46,6 +47,24 @@ def launching(file: str, packages: Iterable[Package]) -> str:
     name = Path(file).name
     owner = next((p for p in packages if any(f.name == name for f in (p.folder / "launch").rglob("*"))), None)
     return "" if owner is None else f"; to start it: graphflow launch {owner.name} {name}"
+
+
+def starts_of(package: Package) -> str:
+    """Return the commands that start something of a package, as the end of a message; or empty."""
+    folder = package.folder / "launch"
+    files = sorted(file.name for file in folder.rglob("*") if file.suffix in _LAUNCH_FILES)
+    starts = [f"graphflow launch {package.name} {file}" for file in files[:1]]
+    starts += [f"graphflow run {package.name} {executable}" for executable in package.executables[:1]]
+    return "; to start it: " + ", or ".join(starts) if starts else ""
+
+
+def inner_workspaces(workspace: Workspace) -> list[Path]:
+    """Return the folders within a workspace that are workspaces themselves, as their packages lie in a `src`."""
+    found: dict[Path, None] = {}
+    for package in workspace.packages.values():
+        inside = package.folder.relative_to(_source(workspace))
+        found.update((_source(workspace) / above.parent, None) for above in inside.parents if above.name == "src")
+    return [*found]
 
 
 def outer_workspace(workspace: Workspace) -> Workspace | None:

@@ -7,7 +7,15 @@ from pathlib import Path
 import pytest
 
 from graphflow.workspace.packages import Workspace, find_workspace
-from graphflow.workspace.unfound import launching, no_packages, outer_workspace, owners, why_no_package
+from graphflow.workspace.unfound import (
+    inner_workspaces,
+    launching,
+    no_packages,
+    outer_workspace,
+    owners,
+    starts_of,
+    why_no_package,
+)
 
 SETUP = "from setuptools import setup\nsetup(entry_points={'console_scripts': ['shine = lamp.node:main']})\n"
 
@@ -53,6 +61,23 @@ def test_launch_files_of_packages(workspace: Workspace) -> None:
     assert launching("lamp.launch.py", workspace.packages.values()) == told
     assert launching("src/lamp.launch.py", workspace.packages.values()) == told
     assert launching("other.launch.py", workspace.packages.values()) == ""
+
+
+def test_what_starts_a_package(workspace: Workspace) -> None:
+    """Its first launch file and its first executable."""
+    lamp = workspace.packages["lamp"]
+    assert starts_of(lamp) == "; to start it: graphflow run lamp shine"
+    (lamp.folder / "launch").mkdir()
+    (lamp.folder / "launch" / "lamp.launch.py").touch()
+    (lamp.folder / "launch" / "README").touch()
+    assert starts_of(lamp) == "; to start it: graphflow launch lamp lamp.launch.py, or graphflow run lamp shine"
+
+
+def test_workspaces_within_another(workspace: Workspace) -> None:
+    """Those whose packages are in a folder `src` of their own."""
+    assert inner_workspaces(workspace) == []
+    write(workspace.root / "src" / "mine" / "src" / "bulb", package_xml=manifest("bulb"))
+    assert inner_workspaces(find_workspace(workspace.root)) == [workspace.root / "src" / "mine"]
 
 
 @pytest.mark.parametrize(

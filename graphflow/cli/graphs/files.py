@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence, Sized
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 _SHOWN = 12
 """Most files of a folder that an error lists."""
+_CLASS = re.compile(r"[^\W\d][\w.]*:[^\W\d]\w*")
+"""A class as `graphflow run` takes it: `nodes.talker:Talker`."""
 
 
 def find_graph(text: str) -> Path:
@@ -38,7 +41,7 @@ def find_graph(text: str) -> Path:
     from graphflow.workspace import installed
     from graphflow.workspace.packages import find_workspace
     from graphflow.workspace.project import bundled_graphs, project_root, shown
-    from graphflow.workspace.unfound import launching
+    from graphflow.workspace.unfound import launching, starts_of
 
     own = project_root(Path.cwd()) / "graphs" / f"{text.removesuffix('.yaml')}.yaml"
     if own.is_file():
@@ -55,14 +58,19 @@ def find_graph(text: str) -> Path:
     if path.exists() and not path.is_dir():
         raise UsageFault(f"{text}: it is not a regular file")
     _refuse_node(text)
-    if way := launching(text, find_workspace(Path.cwd()).packages.values()):
+    packages = find_workspace(Path.cwd()).packages
+    if way := launching(text, packages.values()):
         raise UsageFault(f"{text}: there is no such file{way}")
+    if text in packages:
+        raise UsageFault(f"{text} is a package, not a graph file{starts_of(packages[text])}")
     folder = path if path.is_dir() else path.parent
-    near = {str(p): p.stem for p in (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))}
+    files = folder.glob("*.py") if path.suffix == ".py" else (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))
+    near = {str(file): file.stem for file in files}
     what = "is a folder" if path.is_dir() else "there is no such file"
     if path.is_dir() and (inside := sorted(map(str, [*path.glob("*.yaml")] or path.rglob("*.yaml")))):
         raise UsageFault(f"{text}: is a folder; name one of its files: {', '.join(inside[:_SHOWN])}")
-    hint = did_you_mean(text, [*near, *bundled, *others])
+    known = [*near] if path.suffix == ".py" else [*near, *bundled, *others]
+    hint = did_you_mean(text, known)
     if not hint and path.stem in {**bundled, **others}:
         hint = f"; one of that name comes with graphflow: graphflow up {path.stem}"
     raise UsageFault(f"{text}: {what}{hint or _without_suffix(path, near)}")
@@ -87,6 +95,8 @@ def _refuse_node(name: str) -> None:
     from graphflow.workspace.executables import project_nodes
     from graphflow.workspace.project import demos_root, project_root
 
+    if _CLASS.fullmatch(name):
+        raise UsageFault(f"{name} is a node's class, not a graph file; run it with: graphflow run {name}")
     root = project_root(Path.cwd())
     files = [folder / "nodes" / f"{name}.py" for folder in (root, demos_root())]
     if name in project_nodes(root) or any(file.is_file() for file in files):

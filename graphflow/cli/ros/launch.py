@@ -129,15 +129,20 @@ def _refuse_package(word: str) -> None:
     Raises:
         UsageFault: It is; the text lists its launch files.
     """
+    if Path(word).exists() or not word.isidentifier():
+        return
+    files = launch_files(word)
+    if files:  # a package without launch files may share its name with a graph, which is meant then
+        raise UsageFault(f"{word!r} is a package; write graphflow launch {word} FILE; it has {', '.join(files)}")
+
+
+def launch_files(package: str) -> list[str]:
+    """Return the names of a package's launch files."""
     from graphflow.workspace.executables import package_share
     from graphflow.workspace.project import project_root
 
-    if Path(word).exists() or not word.isidentifier():
-        return
-    folder = package_share(word, project_root(Path.cwd()), os.environ)
-    files = _launch_files(_files_below(folder)) if folder is not None else []
-    if files:  # a package without launch files may share its name with a graph, which is meant then
-        raise UsageFault(f"{word!r} is a package; write graphflow launch {word} FILE; it has {', '.join(files)}")
+    folder = package_share(package, project_root(Path.cwd()), os.environ)
+    return [] if folder is None else _launch_files(_files_below(folder))
 
 
 def _launch_files(files: Iterable[Path]) -> list[str]:

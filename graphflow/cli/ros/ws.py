@@ -124,11 +124,15 @@ def _print_json(workspace: Workspace, interfaces: Mapping[str, list[str]], fault
 
 
 def _print(workspace: Workspace, interfaces: Mapping[str, list[str]], faults: list[str]) -> None:
-    from graphflow.workspace.unfound import outer_workspace
+    from graphflow.workspace.unfound import inner_workspaces, outer_workspace
 
     outer = outer_workspace(workspace)
     if outer is not None:
         output.talk(f"This workspace is within another one, whose packages are not visible from here: {outer.root}")
+    for inner in inner_workspaces(workspace):
+        output.talk(
+            f"{inner.relative_to(workspace.root)} is a workspace of its own, whose packages are visible here, too"
+        )
     packages = workspace.packages.values()
     rows = [("PACKAGE", "EXECUTABLES", "INTERFACES", "FOLDER")]
     for p in packages:

@@ -52,6 +52,12 @@ def test_a_file_comes_before_a_bundled_graph(tmp_path: Path, monkeypatch: pytest
         ("graphs", "graphs: is a folder; name one of its files: graphs/other.yaml"),
         ("talker", "'talker' is a node, not a graph: graphflow run talker"),
         ("lamp.launch.py", "lamp.launch.py: there is no such file; to start it: graphflow launch lamp lamp.launch.py"),
+        ("lamp", "lamp is a package, not a graph file; to start it: graphflow launch lamp lamp.launch.py"),
+        (
+            "nodes.lamp:Lamp",
+            "nodes.lamp:Lamp is a node's class, not a graph file; run it with: graphflow run nodes.lamp:La",
+        ),
+        ("src/lmp.py", "src/lmp.py: there is no such file; did you mean 'src/lamp.py'?"),
         ("pipe.yaml", "pipe.yaml: it is not a regular file"),
         ("turtlesm", "turtlesm: there is no such file; did you mean 'turtlesim'"),
     ],
@@ -63,6 +69,7 @@ def test_neither(text: str, told: str, tmp_path: Path, monkeypatch: pytest.Monke
     (tmp_path / "src" / "lamp" / "launch").mkdir(parents=True)
     (tmp_path / "src" / "lamp" / "package.xml").write_text("<package><name>lamp</name></package>")
     (tmp_path / "src" / "lamp" / "launch" / "lamp.launch.py").touch()
+    (tmp_path / "src" / "lamp.py").touch()
     os.mkfifo(tmp_path / "pipe.yaml")
     for name in ("lab.yaml", "graphs/other.yaml"):
         (tmp_path / name).write_text(GRAPH)

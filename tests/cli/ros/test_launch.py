@@ -67,8 +67,8 @@ def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
     (tmp_path / "a.py").write_text("import os\nos._exit(3)\n")
     assert "it ended without a launch description" in machine.look("launch", "convert", str(tmp_path / "a.py"), code=2)
     assert "does not exist" in machine.look("launch", "convert", "gone.xml", code=2)
-    told = machine.look("launch", "turtlesim", "multisim.launch.py", code=2)
-    assert "comes with graphflow has no launch files; to start its graph: graphflow up turtlesim" in told
+    told = machine.look("launch", "demo_nodes_py", "talker.launch.py", code=2)
+    assert "comes with graphflow has no launch files; graphflow launch FILE starts a file" in told
     assert "Package 'nav2' not found" in machine.look("launch", "nav2", "a.launch.xml", code=2)
 
 

@@ -1,4 +1,4 @@
-"""The commands of courses that use a TurtleBot3."""
+"""The launch files of courses: a TurtleBot3, and two turtles."""
 
 from __future__ import annotations
 
@@ -31,6 +31,7 @@ def test_launching_a_world(machine: Machine, name: str) -> None:
         (("my_turtlebot", "turtlebot_simulation.launch.py", "world:=empty"), "world empty: burger"),
         (("aro_reactive_control", "hw01_sim.launch.xml"), "[reactive_control]: drive"),
         (("turtlebot3_cartographer", "cartographer.launch.py"), "is up: 1 node"),
+        (("turtlesim", "multisim.launch.py"), "[turtlesim2.turtlesim]: Spawning turtle"),
         (("slam_toolbox", "online_async_launch.py"), "is up: 1 node"),
     ],
 )

@@ -82,6 +82,13 @@ def test_a_key_with_a_typo_is_not_missing_too() -> None:
             "{package: p, executable: e}",
             ["unknown key 'package'; it is called 'pkg' here", "unknown key 'executable'; it is called 'exec' here"],
         ),
+        (
+            "{class: x:Y, executable: e, parameters: {}}",
+            [
+                "unknown key 'executable'; it is called 'exec' here",
+                "unknown key 'parameters'; it is called 'params' here",
+            ],
+        ),
         ("{pkg: p, exec: e, output: screen}", ["unknown key 'output'; what any node prints is logged and shown"]),
         ("{pkg: p, exec: e, name: n}", ["unknown key 'name'; a node is called as its key"]),
         (
