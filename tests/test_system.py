@@ -109,3 +109,11 @@ def test_a_loop_that_there_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("GRAPHFLOW_LOOP", "trio")
     with pytest.raises(UsageFault, match="GRAPHFLOW_LOOP is 'trio'; it may be 'asyncio' or 'uvloop'"):
         chosen_loop()
+
+
+def test_a_loop_that_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The error has the command that installs it."""
+    monkeypatch.setenv("GRAPHFLOW_LOOP", "uvloop")
+    monkeypatch.setitem(sys.modules, "uvloop", None)
+    with pytest.raises(UsageFault, match="'uvloop', which is not installed: pip install uvloop"):
+        chosen_loop()

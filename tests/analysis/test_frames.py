@@ -6,9 +6,14 @@ import gc
 import subprocess
 import sys
 import threading
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from types import FrameType
 
+import pytest
+
+from graphflow.analysis import frames
 from graphflow.analysis.frames import awaited, code_of, running, stack_of, suspended, uncollected
 
 
@@ -65,6 +70,18 @@ def test_a_function_that_has_ended_is_read() -> None:
         return sys._getframe()
 
     assert running(ended()).f_locals["answer"] == 42
+
+
+def test_the_column_of_what_runs() -> None:
+    """It is that of the expression in its line; a frame whose instruction is not known has none."""
+    steps = counting(1)
+    next(steps)
+    copy = suspended(steps)
+    here = running(sys._getframe())
+    assert copy is not None
+    assert copy.column == len("        ")
+    assert here.column == len("    here = ")
+    assert replace(here, f_lasti=-1).column is None
 
 
 def test_other_awaitables_have_no_frame() -> None:
@@ -129,6 +146,29 @@ assert gc.isenabled()
 def test_a_stack_that_is_read_while_collections_run() -> None:
     """They let other threads run; CPython 3.11 would then read frames that are gone, and crash."""
     subprocess.run([sys.executable, "-c", _COLLECTING], check=True, timeout=60)
+
+
+def test_collections_that_wait() -> None:
+    """In CPython 3.11 alone; afterwards they run again."""
+    assert gc.isenabled()
+    with uncollected():
+        assert gc.isenabled() is (sys.version_info >= (3, 12))
+    assert gc.isenabled()
+
+
+@pytest.mark.parametrize("read", [lambda: suspended(counting(1)), lambda: stack_of(threading.get_ident())])
+def test_what_is_read_while_collections_wait(monkeypatch: pytest.MonkeyPatch, read: Callable[[], object]) -> None:
+    """Frames that others may leave at any moment."""
+    waits: list[bool] = []
+
+    @contextmanager
+    def noted() -> Iterator[None]:
+        waits.append(True)
+        yield
+
+    monkeypatch.setattr(frames, "uncollected", noted)
+    assert read()
+    assert waits
 
 
 def test_a_program_without_collections() -> None:

@@ -71,6 +71,8 @@ def file(
         ("while not self.is_done(): time.sleep(0.1)", "self.keep(message.data)"),
         ("while not self.there: pass", SETS),
         ("while not self.there: self.pub.publish(Twist())", SETS),
+        ("while not self.there: print('waits')", SETS),
+        ("while not self.there: self.get_logger().info('waits')", SETS),
         ("while not self.there: rclpy.spin_once(self)", SETS),
         ("self.arrived.wait()", "self.arrived.set()"),
     ],
@@ -126,6 +128,7 @@ def test_what_is_not_known(tmp_path: Path, tick: str, sets: str, init: str) -> N
         "while not self.there and time.monotonic() < end: time.sleep(0.1)",
         "self.arrived.wait(1.0)",
         "while not self.there: work()",
+        "while not self.there: self.keep(1)",
         "while self.queue: self.queue.pop()",
     ],
 )

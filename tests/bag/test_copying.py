@@ -68,6 +68,14 @@ def test_one_topic_of_two_types(tmp_path: Path) -> None:
         made(bags, tmp_path / "c")
 
 
+def test_one_topic_of_two_encodings(tmp_path: Path) -> None:
+    """Their bytes are read in different ways, though the type is one."""
+    other = record(COUNT._replace(encoding="json"), b'{"data": 1}', 0.0)
+    bags = [Bag(write(tmp_path / "a")), Bag(write(tmp_path / "b", [other]))]
+    with pytest.raises(BagError, match="/count is of type std_msgs/msg/Int32, and of another definition of it"):
+        made(bags, tmp_path / "c")
+
+
 def test_a_topic_whose_hash_one_bag_lacks(tmp_path: Path) -> None:
     """Older distributions write none: the two are one topic, with the hash of the other bag; a wrong one is not."""
     plain = record(COUNT._replace(hash=""), Int32(data=1), 0.0)

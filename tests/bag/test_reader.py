@@ -56,6 +56,14 @@ def test_some_of_it(foreign: Path) -> None:
     assert list(bag.records(None, START + 10**12)) == []
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no FIFOs")
+def test_a_bag_that_is_no_file(tmp_path: Path) -> None:
+    """It is there, and is neither a file nor a folder."""
+    os.mkfifo(tmp_path / "bag.mcap")
+    with pytest.raises(BagError, match=r"bag\.mcap: it is not a regular file"):
+        _ = Bag(tmp_path / "bag.mcap").contents
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [

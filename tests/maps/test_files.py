@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -133,9 +134,21 @@ def test_files_that_are_not_there(tmp_path: Path) -> None:
         write_map(GRID, tmp_path / "plans" / "house")
 
 
-@pytest.mark.parametrize(("resolution", "is_told"), [(5.0, True), (0.05, False)])
-def test_large_cells(resolution: float, is_told: bool) -> None:
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no FIFOs")
+def test_a_picture_that_is_no_file(tmp_path: Path) -> None:
+    """It is there, and would never end."""
+    os.mkfifo(tmp_path / "pipe.png")
+    file = written(tmp_path, "", [[0]])
+    file.write_text(file.read_text().replace("p.png", "pipe.png"))
+    with pytest.raises(GraphFileError, match=r"m\.yaml:1:8: it is not a regular file"):
+        read_map(file)
+
+
+@pytest.mark.parametrize(
+    ("resolution", "text"), [(5.0, "0.05 for 5 cm"), (1.0, "0.01 for 1 cm"), (0.5, ""), (0.05, "")]
+)
+def test_large_cells(resolution: float, text: str) -> None:
     """A resolution in centimetres is doubted."""
     grid = GridMap(GRID.cells, resolution, GRID.origin)
-    text = "cells of 5 m are large: resolution: is in metres, 0.05 for 5 cm"
-    assert grid.remark == (text if is_told else "")
+    remark = f"cells of {resolution:g} m are large: resolution: is in metres, {text}"
+    assert grid.remark == (remark if text else "")

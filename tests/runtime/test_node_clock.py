@@ -43,7 +43,7 @@ def test_before_the_node_runs() -> None:
     """There is no clock yet."""
     core = core_of(Node("n"))
 
-    with pytest.raises(ClosedError, match="/n is not running"):
+    with pytest.raises(ClosedError, match="/n is not running; use this from on_start, a handler or a task"):
         _ = NodeClock(core, str, core.add).current
 
 

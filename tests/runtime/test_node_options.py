@@ -12,9 +12,9 @@ from graphflow.errors import DeclarationError
 from graphflow.interface import GroupChange
 from graphflow.machines.regrouping import Regrouping
 from graphflow.msgs.std_msgs.msg import String
-from graphflow.names import Remap
+from graphflow.names import Remap, Resolver
 from graphflow.runtime.node_core import core_of
-from graphflow.runtime.node_options import NodeOptions, make_within, why_not
+from graphflow.runtime.node_options import NodeOptions, make_within, unused_remaps, why_not
 from graphflow.testing import Graph
 
 
@@ -93,6 +93,31 @@ def test_a_name_that_is_insisted_on() -> None:
     """Comes from the surroundings, or else is the usual one."""
     assert make_within(Named, NodeOptions("a"), "named").name == "a"
     assert make_within(Named, NodeOptions(), "named").name == "named"
+
+
+@pytest.mark.parametrize(
+    ("rules", "told"),
+    [
+        ("chatter:=news", ""),
+        ("chater:=news", "matches no name of this node; did you mean 'chatter'?"),
+        (
+            "/out:=chatter",
+            "matches no name of this node; it is the other way round, from the node's name: chatter:=/out",
+        ),
+        ("ns:=/robot1", "matches no name of this node; did you mean __ns:=/robot1?"),
+        ("rate:=fast", "matches no name of this node; to set the parameter write -p rate:=fast"),
+        (
+            "chatter:=news chatter:=talk",
+            "comes too late: chatter:=news has renamed chatter already; remove one of the two",
+        ),
+    ],
+)
+def test_rules_that_nothing_uses(rules: str, told: str) -> None:
+    """Each is told with what was meant, or with the rule that came before."""
+    names = Resolver("talker", "/", [Remap.parse(rule) for rule in rules.split()])
+    names.resolve("chatter")
+    found = list(unused_remaps(names, (), dynamic=False, parameters={"rate"}))
+    assert found == ([f"the remap {rules.split()[-1]} {told}"] if told else [])
 
 
 def test_only_the_node_that_was_meant() -> None:

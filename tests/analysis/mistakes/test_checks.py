@@ -23,6 +23,15 @@ def test_every_module_is_run() -> None:
     assert not [m for m in modules if f"{mistakes.__name__}.{'.'.join(m.parts)}" not in imported]
 
 
+def test_every_check_is_run() -> None:
+    """What a table's module imports, its tables have."""
+    for name in ("checks.py", "native_source.py", "rclpy_source.py"):
+        module = ast.parse((PACKAGE / name).read_text())
+        imports = [node for node in module.body if isinstance(node, ast.ImportFrom) and node.module != "__future__"]
+        used = {node.id for node in ast.walk(module) if isinstance(node, ast.Name)}
+        assert {alias.asname or alias.name for node in imports for alias in node.names} <= used
+
+
 def test_no_check_runs_twice() -> None:
     """A check of both kinds of program is in one table only."""
     for own in (native_source._IN_CLASSES, rclpy_source._IN_PROGRAMS):

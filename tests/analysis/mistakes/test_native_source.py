@@ -15,8 +15,8 @@ class Robot(Node):
 
 class Other(Node):
     def tick(self):
-        if math.degrees(self.angle) > math.radians(90):
-            self.state == "off"
+        self.state == "off"
+        return math.degrees(self.angle) > math.radians(90)
 """
 
 

@@ -10,11 +10,11 @@ from graphflow.analysis.mistakes.pose_names import pose_names
 from graphflow.analysis.syntax import walk
 
 SOURCE = """\
-from math import atan2
-from turtlesim.msg import Pose
+from math import atan2, cos as cosine
+from turtlesim.msg import Color, Pose
 
 class Robot:
-    def heard(self, pose: Pose, other):
+    def heard(self, pose: Pose, color: Color, other):
         self.last = pose
         {}
 """
@@ -33,9 +33,16 @@ def test_a_pose(line: str) -> None:
     assert _is_pose(line)
 
 
-@pytest.mark.parametrize("line", ["other", "self.next", "pose.x"])
+@pytest.mark.parametrize(
+    "line",
+    [
+        *("color", "other", "self.next", "pose.x"),
+        "x = self.create_subscription(Color, 'color', self.heard, 10)\n        other",
+        "self.next = self.before\n        self.before = self.next\n        self.next",
+    ],
+)
 def test_other_names(line: str) -> None:
-    """Other arguments, attributes that nothing sets, and a pose's fields are none."""
+    """Arguments of other types, attributes that nothing sets, or each other alone, and a pose's fields are none."""
     assert not _is_pose(line)
 
 
@@ -48,6 +55,7 @@ def test_functions_of_math() -> None:
     """They are known by an import or by their module, and by nothing else."""
     names = pose_names(ast.parse(SOURCE.format("...")))
     called = [
-        names.called(ast.parse(text, mode="eval").body) for text in ("atan2", "math.sin", "np.cos", "sin", "a.sin")
+        names.called(ast.parse(text, mode="eval").body)
+        for text in ("atan2", "math.sin", "np.cos", "sin", "a.sin", "cos")
     ]
-    assert called == ["atan2", "sin", "cos", "", ""]
+    assert called == ["atan2", "sin", "cos", "", "", ""]

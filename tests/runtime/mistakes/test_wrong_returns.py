@@ -114,6 +114,8 @@ def test_a_result_that_is_forgotten() -> None:
     text = str(wrong_return(None, Fibonacci.Result, Front().count))
     place = f"test_wrong_returns.py:{code.co_firstlineno}"
     assert text == f"it returned None: end it with return Fibonacci.Result(...) ({place})"
+    text = str(wrong_return(None, Fibonacci.Result, Front().count, "front.py:7"))
+    assert text.endswith("return Fibonacci.Result(...) (front.py:7)")
 
 
 class Refusing(Node):

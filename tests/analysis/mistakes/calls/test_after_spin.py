@@ -43,9 +43,16 @@ def test_statements_for_the_end(statement: str) -> None:
     assert list(after_spin(ast.parse(_PROGRAM.format(statement)))) == []
 
 
-@pytest.mark.parametrize("use", ["response = future.result()", "print(future.result().sum)"])
+@pytest.mark.parametrize(
+    "use",
+    [
+        "response = future.result()",
+        "print(future.result().sum)",
+        "response = future.result()\n    print(future.result())\n    node.move()",
+    ],
+)
 def test_the_result_of_a_future(use: str) -> None:
-    """The sentence has the call that returns when the future is done."""
+    """The sentence has the call that returns when the future is done; it is told of the first line only."""
     program = _PROGRAM.replace("    rclpy.spin", "    future = node.send()\n    rclpy.spin").format(use)
     [(line, text)] = after_spin(ast.parse(program))
     assert line == 16
@@ -53,9 +60,17 @@ def test_the_result_of_a_future(use: str) -> None:
     assert text.endswith("write rclpy.spin_until_future_complete(node, future) in line 15")
 
 
-def test_a_future_of_the_end() -> None:
-    """One that is made after spin is awaited there in another way."""
-    program = _PROGRAM.format("future = node.end()\n    print(future.result())")
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("pass", "future = node.end()\n    print(future.result())"),
+        ("future = None", "future = node.end()\n    print(future.result())"),
+        ("future = pool.submit(work)", "print(future.result(1.0))"),
+    ],
+)
+def test_futures_of_the_end(before: str, after: str) -> None:
+    """One that is made after spin is awaited there in another way, as is one of a thread, with a limit."""
+    program = _PROGRAM.replace("    rclpy.spin", f"    {before}\n    rclpy.spin").format(after)
     assert list(after_spin(ast.parse(program))) == []
 
 

@@ -14,20 +14,25 @@ def told(body: str, head: str = "async def tick(self)") -> list[tuple[int, str]]
     return list(blocking_async(ast.parse(f"class Walker(Node):\n    {head}:\n{lines}")))
 
 
-def test_a_sleep() -> None:
+@pytest.mark.parametrize("pause", ["1 / self.rate", "0.05", "1"])
+def test_a_sleep(pause: str) -> None:
     """It comes with the one that is awaited."""
-    [(line, text)] = told("time.sleep(1 / self.rate)")
+    [(line, text)] = told(f"time.sleep({pause})")
     assert line == 3
     assert text == (
-        "time.sleep in an async def stops every handler of the process; write await self.clock.sleep(1 / self.rate)"
+        f"time.sleep in an async def stops every handler of the process; write await self.clock.sleep({pause})"
     )
 
 
-def test_a_loop_without_a_pause() -> None:
+@pytest.mark.parametrize("condition", ["True", "1"])
+def test_a_loop_without_a_pause(condition: str) -> None:
     """Its line is told, whatever it calls."""
-    [(line, text)] = told("while True:\n    self.out.publish(Twist())")
+    [(line, text)] = told(f"while {condition}:\n    self.out.publish(Twist())")
     assert line == 3
-    assert text.startswith("this loop never awaits, so no other handler of the process runs")
+    assert text == (
+        "this loop never awaits, so no other handler of the process runs; end each turn with "
+        "await self.clock.sleep(0.1), or write @timer(0.1)"
+    )
 
 
 @pytest.mark.parametrize(
@@ -37,14 +42,33 @@ def test_a_loop_without_a_pause() -> None:
         "time.sleep(0.001)",
         "await asyncio.to_thread(lambda: time.sleep(1.0))",
         "def work():\n    time.sleep(1.0)\nawait self.offload(work)",
-        "while True:\n    await self.clock.sleep(0.1)",
-        "while True:\n    if self.read():\n        break",
-        "while self.is_on:\n    self.step()",
     ],
 )
-def test_what_lets_others_run(body: str) -> None:
-    """Awaited sleeps, short ones, those of threads, and loops that end."""
+def test_sleeps_that_let_others_run(body: str) -> None:
+    """Awaited ones, short ones, and those of threads."""
     assert told(body) == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "await self.clock.sleep(0.1)",
+        "async for message in self.heard: self.use(message)",
+        "async with self.lock: self.step()",
+        "yield self.read()",
+        "if self.read(): break",
+        "if self.read(): return",
+        "if self.read(): raise ValueError",
+    ],
+)
+def test_loops_that_let_others_run(line: str) -> None:
+    """Those that wait, and those that end."""
+    assert told(f"while True:\n    {line}") == []
+
+
+def test_a_loop_with_a_condition() -> None:
+    """What it calls may change it."""
+    assert told("while self.is_on:\n    self.step()") == []
 
 
 def test_a_handler_in_a_thread() -> None:

@@ -40,6 +40,18 @@ def test_a_declaration_by_another_name() -> None:
     assert text.startswith("graphflow's Param has no effect in a node of rclpy")
 
 
+def test_a_node_by_another_name() -> None:
+    """What counts is the name that rclpy has for it."""
+    source = SOURCE.replace("(Node)", "(Base)").format("rclpy.node import Node as Base")
+    assert len(list(mixed_interfaces(ast.parse(source)))) == 2
+
+
+def test_declarations_of_others() -> None:
+    """A decorator of another module may be called `timer`, too."""
+    source = SOURCE.replace("from graphflow import", "from profiling import").format("rclpy.node import Node")
+    assert not list(mixed_interfaces(ast.parse(source)))
+
+
 def test_a_native_node() -> None:
     """It is what the declarations are for."""
     assert not list(mixed_interfaces(ast.parse(SOURCE.format("graphflow import Node"))))

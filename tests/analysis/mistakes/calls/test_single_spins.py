@@ -33,15 +33,26 @@ def test_the_only_spin() -> None:
     assert text.endswith("write rclpy.spin(Talker())")
 
 
+def test_a_spin_outside_functions() -> None:
+    """It is the program's, as one in `main` is."""
+    [(line, _)] = _found("pass", more="rclpy.spin_once(node)")
+    assert line == 9
+
+
 @pytest.mark.parametrize(
     ("spin", "made", "more"),
     [
         ("while rclpy.ok(): rclpy.spin_once(node)", _TIMER, "main()"),
+        ("for _ in range(9): rclpy.spin_once(node)", _TIMER, "main()"),
+        ("[rclpy.spin_once(node) for _ in range(9)]", _TIMER, "main()"),
+        ("rclpy.spin(node)", _TIMER, "main()"),
+        ("rclpy.spin_until_future_complete(node, future)", _TIMER, "main()"),
         ("rclpy.spin_once(node)", "subscription(Int32, 'a', self.heard, 10)", "main()"),
         ("rclpy.spin_once(node)", _TIMER, "rclpy.spin(node)"),
+        ("rclpy.spin_once(node)", _TIMER, "rclpy.spin_until_future_complete(node, future)"),
         ("pass", _TIMER, "def step(): rclpy.spin_once(node)"),
     ],
 )
 def test_spins_that_may_be_meant(spin: str, made: str, more: str) -> None:
-    """A loop, a program that waits for one message, one that also spins, and a helper are left alone."""
+    """Loops, other spins, a program that waits for one message, one that also spins, and a helper are left alone."""
     assert _found(spin, made, more) == []

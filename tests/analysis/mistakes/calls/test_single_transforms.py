@@ -53,14 +53,30 @@ def test_a_transform_of_a_method_that_the_start_calls() -> None:
         (SEND, SEND),
         ("pass", SEND),
         ("self.tf.send_static(one)", "pass"),
+        ("await self.tick()", SEND),
         ("while True:\n            " + SEND, "pass"),
-        (SEND, "use(self.tf)"),
-        (SEND, "self.other.tf.send(one)"),
+        ("for _ in range(9):\n            " + SEND, "pass"),
+        ("async for _ in self.clock.every(1.0):\n            " + SEND, "pass"),
         ("self.later(lambda: " + SEND + ")", "pass"),
+        ("def later():\n            " + SEND + "\n        self.create_timer(1.0, later)", "pass"),
     ],
 )
 def test_transforms_that_are_sent_again(start: str, tick: str) -> None:
-    """In a timer, in a loop, or perhaps elsewhere."""
+    """In a timer, though the start calls its handler, too; in a loop, or in a function that others call."""
+    assert not list(single_transforms(ast.parse(NATIVE.format(start, tick))))
+
+
+@pytest.mark.parametrize(
+    ("start", "tick"),
+    [
+        (SEND, "use(self.tf)"),
+        (SEND, "self.other.tf.send(one)"),
+        ("self.other.tf.send(one)", "pass"),
+        ("all(" + SEND + " for one in ones)", "pass"),
+    ],
+)
+def test_transforms_that_may_be_sent_again(start: str, tick: str) -> None:
+    """By code that they are passed to, or by the other node that has them."""
     assert not list(single_transforms(ast.parse(NATIVE.format(start, tick))))
 
 

@@ -8,6 +8,14 @@ import pytest
 
 from graphflow.analysis.mistakes.units.literal_units import literal_units
 
+POSE = """
+from turtlesim.msg import Pose
+
+class Robot:
+    def moved(self, pose: Pose):
+        return {}
+"""
+
 
 @pytest.mark.parametrize(
     ("code", "told"),
@@ -29,6 +37,8 @@ from graphflow.analysis.mistakes.units.literal_units import literal_units
             "pose.theta is in radians, from -3.142 to 3.142: 90 degrees are 1.571",
         ),
         ("quaternion_from_euler(0, 0, 45)", "an angle is in radians: 45 degrees are 0.7854"),
+        (POSE.format("pose.theta < -90"), "from -3.142 to 3.142: -90 degrees are -1.571, math.radians(-90)"),
+        (POSE.format("90 < pose.theta"), "from -3.142 to 3.142: 90 degrees are 1.571, math.radians(90)"),
     ],
 )
 def test_numbers_in_another_unit(code: str, told: str) -> None:
@@ -37,16 +47,43 @@ def test_numbers_in_another_unit(code: str, told: str) -> None:
     assert told in text
 
 
+@pytest.mark.parametrize("period", ["60", "300", "3600", "500.0", "0.5", "True", "rate"])
+def test_periods_that_may_be_meant(period: str) -> None:
+    """Whole minutes, fractions, small numbers and computed ones are left alone."""
+    assert literal_units(ast.parse(f"timer({period})")) == ()
+
+
 @pytest.mark.parametrize(
     "code",
     [
-        *("timer(60)", "timer(300)", "timer(3600)", "timer(500.0)", "timer(0.5)", "timer(True)", "timer(rate)"),
-        *("period = 0.5\ntimer(period)", "period = 500\nperiod = 0.5\ntimer(period)", "def f(x): timer(x)"),
-        *("Pose(theta=9.42)", "Pose(theta=5)", "Pose(theta=15.5)", "draw(angle=math.radians(90))", "move(x=90)"),
-        *("pose.theta > 90", "def f(self, robot): return robot.theta > 90"),
-        *("self.create_rate(100)", "quaternion_from_euler(0, 0, yaw)"),
+        *("period = 0.5\ntimer(period)", "period = 500\nperiod = 0.5\ntimer(period)"),
+        *("def f(x): timer(x)", "self.create_rate(100)"),
     ],
 )
-def test_numbers_that_may_be_meant(code: str) -> None:
-    """Whole minutes, fractions, small numbers and computed ones are left alone."""
+def test_names_and_rates(code: str) -> None:
+    """A name that is bound to another number, and an argument, are left alone; a rate is a frequency."""
+    assert literal_units(ast.parse(code)) == ()
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        *("Pose(theta=9.42)", "Pose(theta=5)", "Pose(theta=15.5)", "draw(angle=math.radians(90))", "move(x=90)"),
+        "quaternion_from_euler(0, 0, yaw)",
+    ],
+)
+def test_angles_that_may_be_meant(code: str) -> None:
+    """Small numbers, fractions, computed ones, and what is no angle are left alone."""
+    assert literal_units(ast.parse(code)) == ()
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        *("pose.theta > 90", "def f(self, robot): return robot.theta > 90"),
+        *(POSE.format(f"pose.{test}") for test in ("theta > 3", "theta < -1.5", "theta > self.limit", "x > 10")),
+    ],
+)
+def test_angles_that_a_pose_may_have(code: str) -> None:
+    """Those of another class may be in degrees, and a pose's are small."""
     assert literal_units(ast.parse(code)) == ()

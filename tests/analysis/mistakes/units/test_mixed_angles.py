@@ -46,17 +46,15 @@ PLAIN = "{0} is in degrees, and {1} in radians; write math.radians({0})"
         ("error = math.degrees(given) - atan2(1, 2)", BOTH.format("math.degrees(given)", "atan2(1, 2)")),
         ("error = np.rad2deg(given) - np.arctan2(1, 2)", BOTH.format("np.rad2deg(given)", "np.arctan2(1, 2)")),
         ("if abs(self.heading) > math.radians(90): go()", BOTH.format("abs(self.heading)", "math.radians(90)")),
-        ("error = 2.0 * (self.wanted - m.theta)", ""),
         ("error = 2.0 * (self.wanted - pose.theta)", PLAIN.format("self.wanted", "pose.theta")),
         ("error = self.wanted - self.turn", PLAIN.format("self.wanted", "self.turn")),
         ("x = math.cos(self.wanted)", "self.wanted is in degrees, and cos takes radians"),
-        ("angle += pose.theta", ""),
         ("x = math.cos(self.heading)", "self.heading is in degrees, and cos takes radians"),
     ],
 )
 def test_degrees_and_radians(line: str, told: str) -> None:
-    """Are told where they are added, subtracted or compared; a name that is computed further is not known."""
-    assert [text for _, text in mixed_angles(ast.parse(TURTLE.format(line)))] == ([told] if told else [])
+    """Are told where they are added, subtracted or compared."""
+    assert [text for _, text in mixed_angles(ast.parse(TURTLE.format(line)))] == [told]
 
 
 @pytest.mark.parametrize(
@@ -65,26 +63,61 @@ def test_degrees_and_radians(line: str, told: str) -> None:
         "error = math.atan2(1.0, 2.0) - self.pose.theta",
         "error = math.degrees(math.atan2(1.0, 2.0) - self.pose.theta)",
         "error = angle - math.degrees(self.pose.theta)",
-        "error = angle - goal.theta",
         "error = math.radians(self.wanted) - pose.theta",
         "error = self.wanted - math.degrees(pose.theta)",
         "error = self.turn - pose.theta",
-        "error = self.bare - pose.theta",
-        "error = angle - given.theta",
-        "error = angle - given",
         "error = angle - 90.0",
-        "error = angle - np.angle(given)",
         "error = math.sin(math.radians(angle))",
         "error = math.radians(angle) - pose.theta",
         "self.log.info('%f %f', angle, pose.theta)",
-        "angle = math.radians(angle)\n        error = angle - pose.theta",
-        "self.pose.theta = degrees(given)\n        error = angle - pose.theta",
-        "self.degrees = Servo()\n        error = self.degrees(given) - pose.theta",
     ],
 )
 def test_angles_that_fit(line: str) -> None:
-    """Angles of one unit, and those whose unit is not seen, such as the `theta` of another class."""
+    """They are of one unit, or only shown together."""
     assert mixed_angles(ast.parse(TURTLE.format(line))) == ()
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "error = angle - goal.theta",
+        "error = angle - given.theta",
+        "error = angle - given",
+        "error = angle - np.angle(given)",
+        "error = self.bare - pose.theta",
+        "error = 2.0 * (self.wanted - m.theta)",
+        "angle = math.radians(angle)\n        error = angle - pose.theta",
+        "self.pose.theta = degrees(given)\n        error = angle - pose.theta",
+        "self.degrees = Servo()\n        error = self.degrees(given) - pose.theta",
+        "angle += pose.theta",
+    ],
+)
+def test_angles_whose_unit_is_not_seen(line: str) -> None:
+    """Such as the `theta` of another class, or a name that is computed further."""
+    assert mixed_angles(ast.parse(TURTLE.format(line))) == ()
+
+
+@pytest.mark.parametrize(
+    ("declared", "line", "told"),
+    [
+        ("unit='deg'", "wanted - pose.theta", PLAIN.format("self.wanted", "pose.theta")),
+        ("unit='rad'", "math.radians(pose.theta)", "pose.theta is in radians already: leave out math.radians"),
+        ("unit='rad'", "np.degrees(math.degrees(given))", "math.degrees(given) is in degrees already"),
+    ],
+)
+def test_a_file_with_one_mention(declared: str, line: str, told: str) -> None:
+    """A parameter in degrees is enough, and so is a conversion to radians."""
+    source = f"""
+from turtlesim.msg import Pose
+
+class Turtle(Node):
+    wanted = Param(90.0, {declared})
+
+    def heard(self, given, pose: Pose):
+        return {line.replace("wanted", "self.wanted")}
+"""
+    [(_, text)] = mixed_angles(ast.parse(source))
+    assert text.startswith(told)
 
 
 def test_another_pose() -> None:

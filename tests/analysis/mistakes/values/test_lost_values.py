@@ -63,6 +63,11 @@ def _told(source: str, line: str) -> list[str]:
             "msg = Twist()\n        msg.linear.x = 2.0",
             "msg is a message that nothing reads; publish it, as in .publish(msg)",
         ),
+        (
+            NATIVE,
+            "msg = Twist()\n        msg.parts[0].x = 2.0",
+            "msg is a message that nothing reads; publish it, as in .publish(msg)",
+        ),
         (NATIVE, "Twist()", "Twist() makes a message that nothing uses; publish it"),
         (RCLPY, "return Twist()", DROPS.format("subscription", "pub", "Twist()")),
     ],
@@ -73,20 +78,37 @@ def test_lost_values(source: str, line: str, told: str) -> None:
 
 
 @pytest.mark.parametrize(
+    "line",
+    [
+        "self.state = 'BACK'",
+        "state = 'BACK'\n        print(state)",
+        "state = 'BACK'\n        return lambda: state",
+        "state = self.call()",
+        "global state\n        state = 'BACK'",
+        "state = 'BACK'\n        print('{{state}}'.format(**locals()))",
+        "for state in range(3): pass",
+        "state = self.state",
+        "state = 'BACK'\n        self.state = 'FORWARD'",
+        "class Part:\n            state = 'BACK'",
+    ],
+)
+def test_variables_that_are_read(line: str) -> None:
+    """Those that may be read, whose value is the result of a call, or that the method tells from the attribute."""
+    assert _told(NATIVE, line) == []
+
+
+@pytest.mark.parametrize(
+    ("source", "line"),
+    [(NATIVE, "other = 'BACK'"), (NATIVE, "say = 'BACK'"), (RCLPY, "message = 1\n        return message")],
+)
+def test_variables_of_other_names(source: str, line: str) -> None:
+    """The class sets no attribute of that name."""
+    assert _told(source, line) == []
+
+
+@pytest.mark.parametrize(
     ("source", "line"),
     [
-        (NATIVE, "self.state = 'BACK'"),
-        (NATIVE, "state = 'BACK'\n        print(state)"),
-        (NATIVE, "state = 'BACK'\n        return lambda: state"),
-        (NATIVE, "state = self.call()"),
-        (NATIVE, "other = 'BACK'"),
-        (NATIVE, "global state\n        state = 'BACK'"),
-        (NATIVE, "state = 'BACK'\n        print('{{state}}'.format(**locals()))"),
-        (NATIVE, "for state in range(3): pass"),
-        (NATIVE, "say = 'BACK'"),
-        (NATIVE, "state = self.state"),
-        (NATIVE, "state = 'BACK'\n        self.state = 'FORWARD'"),
-        (NATIVE, "class Part:\n            state = 'BACK'"),
         (NATIVE, "msg = Twist()\n        self.cmd_vel.publish(msg)\n        return msg"),
         (NATIVE, "self.cmd_vel.publish(Twist())\n        return Twist()"),
         (NATIVE, "msg = Twist()\n        self.last = msg\n        return msg"),
@@ -95,15 +117,40 @@ def test_lost_values(source: str, line: str, told: str) -> None:
         (NATIVE, "return Twist()\n\n    async def again(self):\n        self.cmd_vel.publish(await self.drive())"),
         (RCLPY, "return Twist()\n\n    def again(self):\n        self.pub.publish(self.drive(None))"),
         (RCLPY, "return 1"),
-        (NATIVE, "msg = Twist()\n        msg.linear.x = 2.0\n        self.cmd_vel.publish(msg)"),
-        (NATIVE, "msg = Twist()\n        self.list[msg] = 1"),
-        (NATIVE, "msg = Twist()\n        self.use(lambda: msg)"),
-        (NATIVE, "msg = Twist()\n        msg = self.latest\n        msg.linear.x = 2.0"),
-        (NATIVE, "msg = Other()\n        msg.linear = 2.0"),
-        (NATIVE, "with raises(Error):\n            Twist(linear=1)"),
-        (RCLPY, "message = 1\n        return message"),
     ],
 )
-def test_values_that_are_received(source: str, line: str) -> None:
-    """Nothing is told of variables that are read, messages that are published, and handlers that other lines call."""
+def test_messages_that_are_returned(source: str, line: str) -> None:
+    """Those that the handler also publishes or keeps, and those of handlers that other lines call."""
     assert _told(source, line) == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "msg.linear.x = 2.0\n        self.cmd_vel.publish(msg)",
+        "self.list[msg] = 1",
+        "self.use(lambda: msg)",
+        "self.use(**locals())",
+        "del msg",
+        "msg = self.latest\n        msg.linear.x = 2.0",
+    ],
+)
+def test_messages_that_are_read(line: str) -> None:
+    """They may be; or their name also stands for another one."""
+    assert _told(NATIVE, f"msg = Twist()\n        {line}") == []
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "msg = Other()\n        msg.linear = 2.0",
+        "count = 1",
+        "global msg\n        msg = Twist()",
+        "with raises(Error):\n            Twist(linear=1)",
+        "async with raises(Error):\n            Twist(linear=1)",
+        "try:\n            Twist(linear=1)\n        except TypeError: pass",
+    ],
+)
+def test_messages_that_are_meant_otherwise(line: str) -> None:
+    """Objects of other classes, globals, and messages that are made for their error."""
+    assert _told(NATIVE, line) == []

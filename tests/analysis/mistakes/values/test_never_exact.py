@@ -52,6 +52,7 @@ def test_a_place_is_never_exact(line: str, told: str) -> None:
         "if abs(pose.x - self.goal) < 0.1: pass",
         "if other.x == 8.0: pass",
         "assert pose.x == 8.0",
+        "def test_place(pose: Pose):\n            return pose.x == 8.0",
         "self.teleport(8.0)\n        if pose.x == 8.0: pass",
     ],
 )

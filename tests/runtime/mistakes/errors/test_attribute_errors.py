@@ -117,12 +117,17 @@ class Robot(Node):
     """Has a parameter."""
 
     goal_x = Param(1.0)
+    _heading = 0.0
 
 
 def test_a_misspelt_attribute() -> None:
-    """The nearest one is suggested; a name unlike any other keeps Python's text."""
+    """The nearest one is suggested, unless it is private; a name unlike any other keeps Python's text."""
     robot: Any = Robot()
-    for name, text in (("goalx", "has no attribute 'goalx'; did you mean 'goal_x'?"), ("colour", "attribute 'colour'")):
+    for name, text in (
+        ("goalx", "has no attribute 'goalx'; did you mean 'goal_x'?"),
+        ("heading", "attribute 'heading'"),
+        ("colour", "attribute 'colour'"),
+    ):
         with pytest.raises(AttributeError) as caught:
             getattr(robot, name)
         explain(caught.value)

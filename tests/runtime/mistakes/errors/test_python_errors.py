@@ -44,12 +44,23 @@ INFO = "the argument of a timer's handler is a TimerInfo: leave it out, and take
 EXPRESSION = "object {} can't be used in 'await' expression"
 
 
+def remark_at(monkeypatch: pytest.MonkeyPatch, text: str, line: str) -> str:
+    """Return the advice on a TypeError that a line raises."""
+    monkeypatch.setattr(linecache, "getline", lambda *_: line)
+
+    def use() -> None:
+        raise TypeError(text)
+
+    return remark_on(caught(use))
+
+
 @pytest.mark.parametrize(
     ("text", "line", "remark"),
     [
         (EXPRESSION.format("NoneType"), "await self.words.publish(String())", PUBLISH),
         ("'NoneType' object can't be awaited", "await self.words.publish(String())", PUBLISH),
         (EXPRESSION.format("method"), "await self.tick", TICK),
+        ("'method' object can't be awaited", "await self.tick", TICK),
         (
             EXPRESSION.format("int"),
             "x = await self.compute(3)",
@@ -60,6 +71,23 @@ EXPRESSION = "object {} can't be used in 'await' expression"
             "await total(3)",
             "total is not an `async def` and returns at once: remove await",
         ),
+        (EXPRESSION.format("TopicSubscription"), "message = await self.heard", HEARD),
+        ("'TopicSubscription' object can't be awaited", "message = await self.heard", HEARD),
+        (
+            EXPRESSION.format("async_generator"),
+            "await sent.feedback()",
+            "iterate over it: async for item in ....feedback(...)",
+        ),
+    ],
+)
+def test_what_is_awaited(monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark: str) -> None:
+    """Python 3.14 words some errors differently."""
+    assert remark_at(monkeypatch, text, line) == remark
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "remark"),
+    [
         (
             "'AddTwoInts_Response' object is not subscriptable",
             'print(r["sum"])',
@@ -79,14 +107,16 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         ("'<' not supported between instances of 'float' and 'TimerInfo'", "0.0 < speed", INFO),
         ("must be real number, not TimerInfo", "math.sin(speed)", INFO),
         ("float() argument must be a string or a real number, not 'TimerInfo'", "float(speed)", INFO),
-        ("'method' object can't be awaited", "await self.tick", TICK),
-        (EXPRESSION.format("TopicSubscription"), "message = await self.heard", HEARD),
-        ("'TopicSubscription' object can't be awaited", "message = await self.heard", HEARD),
-        (
-            "ServedGoal.feedback() got an unexpected keyword argument 'elapsed'",
-            "goal.feedback(elapsed=1.0)",
-            "it takes a message: write goal.feedback(ACTION.Feedback(elapsed=...))",
-        ),
+    ],
+)
+def test_operands(monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark: str) -> None:
+    """Of messages, times, powers and what a timer gives."""
+    assert remark_at(monkeypatch, text, line) == remark
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "remark"),
+    [
         ("'X' object does not support the context manager protocol", "with self.clock.timeout(1.0):", WITH),
         ("'HandlerGroup' object does not support the context manager protocol", "with self.motion:", GROUP),
         ("'HandlerGroup' object does not support the asynchronous context", "async with self.motion:", GROUP),
@@ -97,16 +127,26 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         ),
         ("'ClientGoalHandle' object does not support the asynchronous context manager", "async with await x:", SEND),
         (
-            EXPRESSION.format("async_generator"),
-            "await sent.feedback()",
-            "iterate over it: async for item in ....feedback(...)",
-        ),
-        (
             "'async for' requires an object with __aiter__ method, got method",
             "async for f in g.feedback:",
             "call it: g.feedback(...)",
         ),
         ("'async for' requires an object with __aiter__ method, got method", "async for p in self.moved:", NO_HANDLER),
+    ],
+)
+def test_with_and_for(monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark: str) -> None:
+    """What they are given, in the words of several versions of Python."""
+    assert remark_at(monkeypatch, text, line) == remark
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "remark"),
+    [
+        (
+            "ServedGoal.feedback() got an unexpected keyword argument 'elapsed'",
+            "goal.feedback(elapsed=1.0)",
+            "it takes a message: write goal.feedback(ACTION.Feedback(elapsed=...))",
+        ),
         (
             "'function' object has no attribute 'sum'",
             "print(g.result.sum)",
@@ -119,16 +159,9 @@ EXPRESSION = "object {} can't be used in 'await' expression"
         ("'float' object is not callable", "print(self.rate())", "self.rate is a value: remove the parentheses"),
     ],
 )
-def test_the_line_and_the_words_of_several_versions(
-    monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark: str
-) -> None:
-    """Python 3.14 words some errors differently."""
-    monkeypatch.setattr(linecache, "getline", lambda *_: line)
-
-    def use() -> None:
-        raise TypeError(text)
-
-    assert remark_on(caught(use)) == remark
+def test_calls_and_attributes(monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark: str) -> None:
+    """Arguments and results of calls, and what is called itself."""
+    assert remark_at(monkeypatch, text, line) == remark
 
 
 @pytest.mark.parametrize(

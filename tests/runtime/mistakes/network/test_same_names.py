@@ -13,6 +13,7 @@ from graphflow.runtime.mistakes.network import same_names
 from graphflow.runtime.mistakes.network.same_names import WARN_AFTER
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
+from graphflow.transport.config import CONNECT_VARIABLE
 from graphflow.wire import process
 
 Caplog = pytest.LogCaptureFixture
@@ -57,6 +58,15 @@ async def test_two_nodes_of_two_processes(graph: Graph, caplog: Caplog) -> None:
     assert first.startswith(f"another node is called /twin, in process {os.getpid()} (")
     assert first.endswith("reach one of them by chance; rename one: --ros-args -r __node:=NAME")
     assert "in session " in second
+    assert ", no graphflow process: parameters" in second
+
+
+async def test_a_node_on_another_machine(graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a link to others, its process may be there."""
+    monkeypatch.setenv(CONNECT_VARIABLE, "tcp/10.0.0.2:7447")
+    await run_two(graph)
+    _, second = sorted(told(caplog))
+    assert ", no graphflow process, or on another machine: parameters" in second
 
 
 async def test_a_node_that_is_restarted(graph: Graph, caplog: Caplog) -> None:

@@ -49,6 +49,14 @@ LOOKS = "nothing calls Robot.{}, which looks like a handler: declare it, as with
 SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
 
 
+def slip_of(robot: object, body: str) -> str:
+    """Return the only sentence about a class with these lines, without its place."""
+    [text] = slips(robot(body))  # type: ignore[operator]
+    place, _, rest = text.partition(": ")
+    assert place.partition("slip_module.py:")[2].isdigit()
+    return rest
+
+
 @pytest.mark.parametrize(
     ("body", "told"),
     [
@@ -59,10 +67,6 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
         ),
         ("def add(self, request: AddTwoInts.Request): ...", LOOKS.format("add", SERVICE)),
         ("def on_pose(self, message): ...", LOOKS.format("on_pose", SUBSCRIPTION)),
-        (
-            "def work(self):\n    self.x = 1\ndef go(self):\n    Thread(target=self.work())",
-            "target=self.work() calls work at once, and passes on its result, None; write target=self.work",
-        ),
         ("def on_strat(self): ...", "nothing calls Robot.on_strat; did you mean on_start?"),
         ("def on_stop(self): ...", "nothing calls Robot.on_stop; did you mean on_shutdown?"),
         (
@@ -70,26 +74,19 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
             "nothing calls Robot.on_configure; derive Robot from LifecycleNode, whose nodes are configured",
         ),
         ("def timer_callback(self): ...", LOOKS.format("timer_callback", "@timer(1.0)")),
-        (
-            "def work(self):\n    self.shutdown",
-            "self.shutdown without parentheses calls nothing; write: self.shutdown()",
-        ),
-        (
-            "tags = Param(['a'])\ndef work(self):\n    self.tags.append('b')",
-            "self.tags.append('b') changes a parameter's list without its checks, and no tool sees it; "
-            "set a new one, as in self.tags = [*self.tags, ...]",
-        ),
-        (
-            "tags = Param(['a'])\ndef work(self):\n    self.tags[0] = 'b'",
-            "self.tags[0] changes a parameter's list without its checks",
-        ),
+    ],
+)
+def test_methods_that_nothing_calls(robot: object, body: str, told: str) -> None:
+    """With what would call it."""
+    assert slip_of(robot, body).startswith(told)
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
         (
             "is_on = False\n@subscription(Bool, 't')\ndef heard(self, m: Bool) -> None:\n    self.is_on = m",
             "m is the whole message, which counts as true; write self.is_on = m.data",
-        ),
-        *(
-            (f"def work(self):\n    {owner}.rate = 2.0", f"{owner}.rate replaces what the class declares")
-            for owner in ("Robot", "type(self)")
         ),
         (
             "def work(self):\n    m = String()\n    m.dat = 'x'\n    return m",
@@ -106,12 +103,40 @@ SUBSCRIPTION, SERVICE = '@subscription(Type, "topic")', '@service(Type, "name")'
         ),
     ],
 )
-def test_slips(robot: object, body: str, told: str) -> None:
+def test_messages(robot: object, body: str, told: str) -> None:
+    """Set to what they cannot hold, or taken for their field."""
+    assert slip_of(robot, body).startswith(told)
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        (
+            "def work(self):\n    self.x = 1\ndef go(self):\n    Thread(target=self.work())",
+            "target=self.work() calls work at once, and passes on its result, None; write target=self.work",
+        ),
+        (
+            "def work(self):\n    self.shutdown",
+            "self.shutdown without parentheses calls nothing; write: self.shutdown()",
+        ),
+        (
+            "tags = Param(['a'])\ndef work(self):\n    self.tags.append('b')",
+            "self.tags.append('b') changes a parameter's list without its checks, and no tool sees it; "
+            "set a new one, as in self.tags = [*self.tags, ...]",
+        ),
+        (
+            "tags = Param(['a'])\ndef work(self):\n    self.tags[0] = 'b'",
+            "self.tags[0] changes a parameter's list without its checks",
+        ),
+        *(
+            (f"def work(self):\n    {owner}.rate = 2.0", f"{owner}.rate replaces what the class declares")
+            for owner in ("Robot", "type(self)")
+        ),
+    ],
+)
+def test_other_slips(robot: object, body: str, told: str) -> None:
     """Each with its line."""
-    [text] = slips(robot(body))  # type: ignore[operator]
-    place, _, rest = text.partition(": ")
-    assert place.partition("slip_module.py:")[2].isdigit()
-    assert rest.startswith(told)
+    assert slip_of(robot, body).startswith(told)
 
 
 @pytest.mark.parametrize(
@@ -122,16 +147,26 @@ def test_slips(robot: object, body: str, told: str) -> None:
         "def on_pose(self, m: String) -> None: ...\nasync def on_start(self) -> None:\n    self.use(self.on_pose)",
         "is_on = None\n@subscription(Bool, 't')\ndef heard(self, m: Bool) -> None:\n    self.is_on = m",
         "def work(self, other):\n    Robot.times = 2\n    other.rate = 2.0\n    self.rate = 2.0",
+        "def helper(self, pose): ...",
+    ],
+)
+def test_what_is_no_slip(robot: object, body: str) -> None:
+    """Hooks, methods that are passed on, attributes that are read, and flags of no bool."""
+    assert slips(robot(body)) == ()  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
         "def work(self, m):\n    m.dat = 'x'",
         "def work(self):\n    m = String()\n    m.data = 'x'\n    return m",
         "def work(self):\n    m = String()\n    m = object()\n    m.dat = 'x'\n    return m",
-        "def helper(self, pose): ...",
         "def work(self, messages):\n    m = String()\n    for m in messages:\n        m.dat = 'x'",
         "def work(self):\n    m = self.port.inbox.read()\n    m.dat = 'x'",
     ],
 )
-def test_what_is_no_slip(robot: object, body: str) -> None:
-    """Hooks, methods that are passed on, attributes that are read, messages whose type is not known."""
+def test_messages_of_unknown_types(robot: object, body: str) -> None:
+    """Their names may stand for anything."""
     assert slips(robot(body)) == ()  # type: ignore[operator]
 
 
@@ -179,6 +214,22 @@ def test_an_attribute_that_another_module_of_the_project_reads(robot: object, tm
         assert slips(cls) == ()
     finally:
         del sys.modules["slip_test"]
+
+
+def test_a_flag_that_another_module_of_the_project_sets(robot: object, tmp_path: Path) -> None:
+    """As the program does; without it, the loop has no end."""
+    body = "done = False\nasync def go(self):\n    while not self.done:\n        await self.clock.sleep(0.1)"
+    [text] = slips(robot(body))  # type: ignore[operator]
+    assert "this loop waits for self.done" in text
+    other = tmp_path / "slip_program.py"
+    other.write_text("def end(robot):\n    robot.done = True\n")
+    spec = importlib.util.spec_from_file_location("slip_program", other)
+    assert spec is not None
+    sys.modules["slip_program"] = importlib.util.module_from_spec(spec)
+    try:
+        assert slips(robot(body)) == ()  # type: ignore[operator]
+    finally:
+        del sys.modules["slip_program"]
 
 
 def test_nothing_of_the_users_runs(robot: object) -> None:

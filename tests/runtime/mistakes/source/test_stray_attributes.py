@@ -17,12 +17,14 @@ class Robot(Node):
     rate = Param(1.0)
     goal_x = Param(1.0)
     is_paused = False
+    top_height: float = 2.0
 
     def read(self):
-        return self.is_paused, self.rate, self.max_speed
+        return self.is_paused, self.rate, self.max_speed, self.top_height
 
     def __init__(self):
         self.max_speed = 1.0
+        self.wheel_count = 4
 
     def work(self):
 """
@@ -41,12 +43,15 @@ def told(body: str) -> list[str]:
 
 @pytest.mark.parametrize(
     ("name", "meant"),
-    [("rat", "rate"), ("is_pased", "is_paused"), ("max_sped", "max_speed"), ("maxspeed", "max_speed")],
+    [
+        *(("rat", "rate"), ("is_pased", "is_paused"), ("max_sped", "max_speed"), ("maxspeed", "max_speed")),
+        ("top_heigth", "top_height"),
+    ],
 )
 def test_it_is_told_with_the_one_that_was_meant(name: str, meant: str) -> None:
     """A parameter, an attribute of the class, one of another method."""
     [text] = told(f"self.{name} = 2.0")
-    assert text == f"{FILE}:13: self.{name} is set and never read; did you mean self.{meant}?"
+    assert text == f"{FILE}:15: self.{name} is set and never read; did you mean self.{meant}?"
 
 
 @pytest.mark.parametrize(
@@ -59,8 +64,14 @@ def test_it_is_told_with_the_one_that_was_meant(name: str, meant: str) -> None:
         "self.min_speed = 1.0",
         "self.last_speed = 1.0",
         "self.max_sped = 1.0\nself.max_speed = 2.0",
+        "self.ratio = 2.0",
+        "self.wheel_cuont = 4",
+        "class Part:\n    def __init__(self):\n        self.rat = 1.0",
     ],
 )
 def test_others_are_on_purpose(body: str) -> None:
-    """Those that are read, that no other is like, that differ as pairs do, or that are set beside the other."""
+    """Those that are read, that no other is like which is read, that differ as pairs do, or are set beside the other.
+
+    What a class inside the node sets is not the node's.
+    """
     assert told(body) == []

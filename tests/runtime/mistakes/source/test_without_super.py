@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from graphflow import Node, timer
 from graphflow.runtime.mistakes.source.shadowing import definition_of
+from graphflow.runtime.mistakes.source.slips import slips
 from graphflow.runtime.mistakes.source.without_super import without_super
 
 
@@ -42,3 +43,9 @@ def test_a_hook_without_its_parents() -> None:
     [text] = found[Forgets]
     assert text.startswith("on_start replaces that of Base (test_without_super.py:")
     assert text.endswith("which sets self.goal; write await super().on_start() in its first line")
+
+
+def test_it_is_told_with_its_place() -> None:
+    """Beside the other slips of the class."""
+    [text] = slips(Forgets)
+    assert text.startswith(f"{__file__}:{Forgets.on_start.__code__.co_firstlineno}: on_start replaces that of Base")

@@ -17,6 +17,8 @@ from graphflow import Node, action, service, subscription
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.geometry_msgs.msg import PoseStamped, Twist
+from graphflow.msgs.sensor_msgs.msg import PointCloud2
+from graphflow.msgs.std_msgs.msg import Bool, String
 
 
 class Robot(Node):
@@ -44,19 +46,19 @@ ADD = '@service(AddTwoInts, "add")\ndef add(self, request, response):\n    '
 @pytest.mark.parametrize(
     ("body", "told"),
     [
-        (POSE + "print(m.pos.position)", "10: PoseStamped has no field 'pos'; did you mean 'pose'?"),
-        (POSE + "print(m.pose.positon.x)", "10: Pose has no field 'positon'; did you mean 'position'?"),
-        (POSE + "m.pos = 1", "10: PoseStamped has no field 'pos'; did you mean 'pose'?"),
-        (POSE + "m.pose.position.x = 'fast'", "10: Point.x: expected float64, got 'fast'"),
+        (POSE + "print(m.pos.position)", "12: PoseStamped has no field 'pos'; did you mean 'pose'?"),
+        (POSE + "print(m.pose.positon.x)", "12: Pose has no field 'positon'; did you mean 'position'?"),
+        (POSE + "m.pos = 1", "12: PoseStamped has no field 'pos'; did you mean 'pose'?"),
+        (POSE + "m.pose.position.x = 'fast'", "12: Point.x: expected float64, got 'fast'"),
         (
             POSE + "try:\n        if m.pos.x > 1:\n            print(1)\n    except Exception:\n        pass",
-            "11: PoseStamped has no field 'pos'; did you mean 'pose'?",
+            "13: PoseStamped has no field 'pos'; did you mean 'pose'?",
         ),
-        (ADD + "return AddTwoInts.Response(sum=request.c)", "10: AddTwoInts.Request has no field 'c'"),
-        (ADD + "response.result = 1\n    return response", "10: AddTwoInts.Response has no field 'result'"),
+        (ADD + "return AddTwoInts.Response(sum=request.c)", "12: AddTwoInts.Request has no field 'c'"),
+        (ADD + "response.result = 1\n    return response", "12: AddTwoInts.Response has no field 'result'"),
         (
             "def go(self, t: Twist):\n    print(t.liner.x)\nasync def on_start(self):\n    self.go(Twist())",
-            "9: Twist has no field 'liner'; did you mean 'linear'?",
+            "11: Twist has no field 'liner'; did you mean 'linear'?",
         ),
     ],
 )
@@ -74,23 +76,55 @@ def test_a_field_that_is_not_there(tmp_path: Path, body: str, told: str) -> None
         POSE + "try:\n        x = m.pos\n    except Exception:\n        x = None",
         POSE + "try:\n        if m.pos:\n            print(1)\n    except:\n        print(m.pose)",
         POSE + "print(m.pos if hasattr(m, 'pos') else m.pose)",
+        ADD + "response.sum = request.a + request.b\n    return response",
+    ],
+)
+def test_other_attributes(tmp_path: Path, body: str) -> None:
+    """Are not told: fields, attributes that every message has, and those that may be missing."""
+    assert _told(tmp_path, body) == []
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
         POSE + "m = m.pose\n    print(m.position)",
         POSE + "for m in [m.pose]:\n        print(m.position)",
         POSE + "print(list(map(lambda m: m.real, [1])))",
         POSE + "if isinstance(m, Twist):\n        print(m.linear)",
         '@subscription(PoseStamped, "p")\ndef heard(self, m: object):\n    print(m.pos)',
-        ADD + "response.sum = request.a + request.b\n    return response",
         '@action(Fibonacci, "f")\nasync def count(self, goal):\n    return Fibonacci.Result(sequence=[goal.request.x])',
     ],
 )
-def test_other_attributes(tmp_path: Path, body: str) -> None:
-    """Are not told: fields, attributes of messages and of other objects, and those that may be missing."""
+def test_attributes_of_other_objects(tmp_path: Path, body: str) -> None:
+    """Are not told where a name may stand for something else."""
     assert _told(tmp_path, body) == []
+
+
+FLAG = """def __init__(self):
+    super().__init__("robot")
+    self.is_on = False
+@subscription({}, "x")
+def heard(self, m):
+    {}.is_on = m"""
+
+
+def test_a_message_in_place_of_its_field(tmp_path: Path) -> None:
+    """It is told where the attribute is true or false at first."""
+    [text] = _told(tmp_path, FLAG.format("Bool", "self"))
+    assert text == "15: m is the whole message, which counts as true; write self.is_on = m.data"
+
+
+@pytest.mark.parametrize(
+    ("type_", "owner"), [("String", "self"), ("PointCloud2", "self"), ("Bool", "self.lamp"), ("Bool", "other")]
+)
+def test_messages_that_are_kept(tmp_path: Path, type_: str, owner: str) -> None:
+    """Those without a bool, or with more than one, may be meant as a whole; others' attributes may be anything."""
+    assert _told(tmp_path, FLAG.format(type_, owner)) == []
 
 
 @pytest.mark.parametrize("names", ["response, request", "request, response"])
 def test_a_service_handler_whose_arguments_are_swapped(tmp_path: Path, names: str) -> None:
     """It has one sentence, with the order; in the right order, none."""
     told = _told(tmp_path, f'@service(AddTwoInts, "add")\nasync def add(self, {names}):\n    response.sum = request.a')
-    order = "9: a service handler receives the request first: write def add(self, request, response)"
+    order = "11: a service handler receives the request first: write def add(self, request, response)"
     assert told == ([order] if names.startswith("response") else [])

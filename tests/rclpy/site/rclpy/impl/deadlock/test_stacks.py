@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import threading
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+import pytest
 
 import rclpy
 from rclpy.executors import Executor, ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
@@ -62,6 +65,20 @@ def test_a_callback_is_a_level_of_its_own(node: Node) -> None:
     release.set()
     rclpy.shutdown()
     thread.join(LIMIT)
+
+
+def test_stacks_are_read_while_collections_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As those of other threads, which may go on at any moment."""
+    waits: list[bool] = []
+
+    @contextmanager
+    def noted() -> Iterator[None]:
+        waits.append(True)
+        yield
+
+    monkeypatch.setattr("rclpy.impl.deadlock.stacks.uncollected", noted)
+    assert threading.get_ident() in standing()
+    assert waits == [True]
 
 
 def test_one_that_spins_within_a_callback_waits(node: Node) -> None:
