@@ -273,10 +273,11 @@ class _Translation:
         else:
             ros_arguments(item, entries, self._note)
             entries = {"class": Item(found.class_path, name.place, item.at), **entries}
-        if "brought_to" in item.entries:
-            entries["lifecycle"] = item.entries["brought_to"]
-        if has_value(item, "autostart", "true", "1"):
-            entries["lifecycle"] = item.entries["autostart"].with_value("active")
+        if found is None or not found.is_always_active:
+            if "brought_to" in item.entries:
+                entries["lifecycle"] = item.entries["brought_to"]
+            if has_value(item, "autostart", "true", "1"):
+                entries["lifecycle"] = item.entries["autostart"].with_value("active")
         if "process" in item.entries:  # of a component
             entries["process"] = item.entries["process"]
         if "launch-prefix" in item.entries:

@@ -38,6 +38,12 @@ _VALUES = re.compile(r"""(['"]?)\$\(var (\w+)\)\1""")
 """The value of an argument in an expression."""
 
 
+_YAML_1_1 = {"yes": True, "on": True, "no": False, "off": False}
+"""Words for truth values in YAML 1.1 alone."""
+_OCTAL = re.compile(r"[-+]?0[0-7]+")
+"""An octal number of YAML 1.1."""
+
+
 class SubstitutionError(ValueError):
     """A substitution is malformed, unknown, or has no value."""
 
@@ -47,8 +53,12 @@ class Written(str):
 
     @property
     def value(self) -> Data:
-        """The YAML value of the text; an empty text stays one."""
+        """The YAML 1.1 value of the text, as ROS reads it; an empty text stays one."""
+        if self.lower() in _YAML_1_1:
+            return _YAML_1_1[self.lower()]
         try:
+            if _OCTAL.fullmatch(self):
+                return int(self, 8)
             value = from_yaml(self) if self[:1] in ("[", "'", '"') else scalar(self) if self else ""
         except ValueError:  # a number with too many digits
             return str(self)
@@ -83,13 +93,21 @@ class Substitutions:
         file: The file.
         outside: The environment.
         params: Values of the parameters that the surrounding groups give to all nodes.
+        is_launch: Whether it is a launch file, in which the values of expressions are texts: `True`, not `true`.
     """
 
     def __init__(
-        self, args: Mapping[str, Data], file: Path, outside: Outside, params: Mapping[str, Data] | None = None
+        self,
+        args: Mapping[str, Data],
+        file: Path,
+        outside: Outside,
+        params: Mapping[str, Data] | None = None,
+        *,
+        is_launch: bool = False,
     ) -> None:
         self._args = args
         self._file = file
+        self._is_launch = is_launch
         self._env, self._root, self._logs, self._run = outside
         self._params = params or {}
 
@@ -97,7 +115,7 @@ class Substitutions:
         """Make every substitution in a value; a text that is a single substitution takes its type.
 
         Args:
-            is_word: Whether the value is a word of a command line, which stays text.
+            is_word: Whether the value stays text, as a word of a command line does.
 
         Raises:
             SubstitutionError: A substitution cannot be made.
@@ -192,9 +210,10 @@ class Substitutions:
         text = given[0].text
         try:
             values = {name: arg.value if isinstance(arg, Written) else arg for name, arg in self._args.items()}
-            return evaluate(text, values)
+            found = evaluate(text, values)
         except ExpressionError as error:
             raise SubstitutionError(f"$(eval {text[:60]}): {error}") from None
+        return Written(found) if self._is_launch else found
 
     def _environment(self, given: list[Word]) -> str:
         if not given:

@@ -171,6 +171,8 @@ class Supervisor:
         if len(self._processes) > MESH_LIMIT:
             self.note(no_mesh(len(self._processes)))
         self._start_startable()
+        if not self._processes:  # a launch file may have none
+            self._end_if_all_have()
         health = asyncio.create_task(Health(self._processes.values(), self.note).watch())
         slow = self._context.loop.call_later(SLOW_START, self._note_waits)
         await self.ended.wait()

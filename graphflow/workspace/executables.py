@@ -61,6 +61,8 @@ _NAMES = {"turtlesim_node": "turtlesim", "turtle_teleop_key": "teleop_turtle", "
     "joint_state_publisher_gui": "joint_state_publisher",
 }
 """Names of nodes that differ from those of their executables."""
+_ALWAYS_ACTIVE = ("slam_toolbox", "nav2_map_server")
+"""Packages whose nodes have a life cycle in ROS, and none here."""
 _PACKAGE_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 SLIP = 0.7
 """Similarity, from 0 to 1, from which a name counts as a misspelling of another."""
@@ -73,6 +75,8 @@ class Executable(NamedTuple):
 
     class_path: str
     node_name: str
+    is_always_active: bool = False
+    """Whether it has no life cycle, though ROS's has one."""
 
 
 def find(package: str, executable: str, root: Path) -> Executable | None:
@@ -84,7 +88,8 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
             searched last.
     """
     if (package, executable) in EXECUTABLES:
-        return Executable(EXECUTABLES[package, executable], _NAMES.get(executable, executable))
+        name = _NAMES.get(executable, executable)
+        return Executable(EXECUTABLES[package, executable], name, package in _ALWAYS_ACTIVE)
     module = _scripts(package, root).get(executable)
     if module is None and package in (root.name, _project_name(root)):
         module = f"nodes.{executable}"
@@ -168,15 +173,19 @@ def _not_with_us(package: str, name: str, with_us: Sequence[str], workspace: Wor
     """
     if with_us:
         text = f"the package {package!r} has no executable {name!r} here{did_you_mean(name, with_us)}"
-        return NoExecutable(text, is_slip=nearest(name, with_us) is not None)
+        return NoExecutable(text, is_slip=_is_slip_of(name, nearest(name, with_us)))
     why = why_no_package(package, workspace)
     if why is not None:
         return NoExecutable(why, is_slip=True)
     known = [*workspace.packages, *(package for package, _ in with_graphflow())]
     near = did_you_mean(package, (), hidden=known)
     text = f"there is no package {package!r} in {workspace.root}, and no ROS 2 is sourced{near}"
-    meant = nearest(package, known, cutoff=SLIP)
-    return NoExecutable(text, is_slip=meant is not None and abs(len(meant) - len(package)) <= 2)
+    return NoExecutable(text, is_slip=_is_slip_of(package, nearest(package, known, cutoff=SLIP)))
+
+
+def _is_slip_of(name: str, meant: str | None) -> bool:
+    """Return whether a name is a misspelling of another; much longer ones are names of something else."""
+    return meant is not None and abs(len(meant) - len(name)) <= 2
 
 
 def with_graphflow() -> list[tuple[str, str]]:

@@ -65,7 +65,7 @@ def folder(tmp_path: Path) -> Path:
 def test_a_file_of_each_kind(folder: Path) -> None:
     """One includes the other; arguments, namespaces, conditions, typed parameters, and the names that nodes have."""
     found = load(folder / "multi.launch.yaml", ["background_r:=7"], {})
-    assert (found.name, found.args) == ("multi", {"background_r": 7, "ns": "turtlesim1"})
+    assert (found.name, found.args) == ("multi", {"background_r": "7", "ns": "turtlesim1"})
     nodes = {node.name: node for node in found.nodes}
     assert list(nodes) == ["/turtlesim1/talker", "/turtlesim1/inner/ear", "/turtlesim2/sim"]
     talker, sim = nodes["/turtlesim1/talker"], nodes["/turtlesim2/sim"]
@@ -532,7 +532,31 @@ def test_arguments_are_texts(tmp_path: Path) -> None:
     assert [node.name for node in plan.nodes] == ["/T", "/same", "/on", "/word"]
     assert plan.nodes[3].command == ("echo", "true")
     assert plan.nodes[0].command == ("echo", "True", "v007", "--any=auto", "auto 007")
-    assert plan.args == {"flag": True, "id": 7, "any": "auto", "plain": True}
+    assert plan.args == {"flag": "True", "id": "007", "any": "auto", "plain": "true"}
+
+
+def test_values_that_stay_texts(tmp_path: Path) -> None:
+    """Those of the environment, of messages and of other arguments; a parameter is read by YAML 1.1."""
+    (tmp_path / "a.launch.xml").write_text(
+        """<launch>
+        <arg name="id" default="0042"/><arg name="on" default="off"/><arg name="same" default="$(var id)"/>
+        <set_env name="ID" value="$(var id)"/>
+        <log message="$(var id)"/><log message="$(eval '1 == 1')"/><log message="$(eval 'None')" if="$(eval '1 == 1')"/>
+        <node pkg="turtlesim" exec="turtlesim_node">
+          <env name="SAME" value="$(var same)"/><param name="id" value="$(var id)"/><param name="on" value="$(var on)"/>
+          <param name="text" value="$(var id)" type="str"/><param name="is" value="$(eval '1 == 1')"/>
+        </node></launch>"""
+    )
+    plan = load(tmp_path / "a.launch.xml", [], {})
+    assert [step.target for step in plan.steps] == ["0042", "True", "None"]
+    [node] = plan.nodes
+    assert node.env == {"ID": "0042", "SAME": "0042"}
+    assert {name: setting.value for name, setting in node.params.items()} == {
+        "id": 0o42,
+        "on": False,
+        "text": "0042",
+        "is": True,
+    }
 
 
 def test_what_belongs_to_a_node_that_is_left_out(tmp_path: Path) -> None:

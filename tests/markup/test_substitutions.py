@@ -315,8 +315,18 @@ def test_values_in_expressions(text: str, way: str) -> None:
     assert str(caught.value).partition("is no argument; write ")[2] == way
 
 
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [("0042", 34), ("-017", -15), ("09", 9), ("off", False), ("Yes", True), ("True", True), ("y", "y"), ("", "")],
+)
+def test_values_of_launch_arguments(text: str, value: object) -> None:
+    """They are read by YAML 1.1, as in ROS."""
+    assert Written(text).value == value
+
+
 def test_values_in_expressions_of_launch_files() -> None:
-    """ROS's know no names of arguments, and take texts in quotes."""
-    made = Substitutions({"mode": Written("sim")}, Path("a.launch.xml"), Outside({}, Path(), Path()))
+    """ROS's know no names of arguments, and take texts in quotes; their values are texts, too."""
+    made = Substitutions({"mode": Written("sim")}, Path("a.launch.xml"), Outside({}, Path(), Path()), is_launch=True)
+    assert made.apply("""v=$(eval '1 == 1') $(eval "$(eval '1 == 1')")""") == "v=True True"
     with pytest.raises(SubstitutionError, match=r"""write \$\(eval "'\$\(var mode\)' == 'sim'"\)"""):
         made.apply("$(eval $(var mode) == 'sim')")

@@ -167,7 +167,8 @@ def _show_args(path: Path) -> int:
     for name, spec in (declared or {}).items():
         spec = spec if isinstance(spec, dict) else {}
         unit = f" [{spec['unit']}]" if spec.get("unit") else ""
-        output.data(f"    '{name}':\n        {spec.get('doc') or 'no description given'}{unit}")
+        choices = f" One of: {spec['choices']}" if spec.get("choices") else ""
+        output.data(f"    '{name}':\n        {spec.get('doc') or 'no description given'}{unit}{choices}")
         output.data(f"        (default: {texts.get(name, spec['default'])!r})\n" if "default" in spec else "")
     if not declared:
         output.data("    no arguments")

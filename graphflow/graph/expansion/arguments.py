@@ -75,7 +75,7 @@ class Arguments:
                     spec = spec.with_value({**spec.entries, "default": default})
                 found[name] = self._own(name, spec) if texts is None else self._text(name, spec, texts.get(name, "$("))
             value = found[name]
-            self.values[name] = value.value if isinstance(value, Written) else value
+            self.values[name] = str(value) if isinstance(value, Written) else value
         if texts is not None:  # in ROS, `$(var ...)` also finds arguments that are not declared
             found = {**{name: Written(text) for name, text in self._given.items()}, **found}
         return found

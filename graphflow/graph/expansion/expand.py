@@ -40,6 +40,8 @@ from graphflow.names import check_full_name, check_namespace, did_you_mean, expa
 from graphflow.workspace import executables
 from graphflow.workspace.project import no_file, shown
 
+_TEXTS = ("env", "log", "shutdown")
+"""Keys of groups, nodes and steps whose values are texts, be it the text of a number."""
 MAX_ROUNDS = 10_000
 """Rounds of all loops of a graph together."""
 MAX_FILES = 200
@@ -104,7 +106,7 @@ class Expansion:
             outer = scope
 
             def substituted(item: Item, known: Mapping[str, Data]) -> Item:
-                return self._values.substituted(item, replace(outer, values=known))
+                return self._values.substituted(item, replace(outer, values=known), is_text=launch is not None)
 
             texts = None if launch is None else {name: str(text.value) for name, text in launch.entries.items()}
             values = self.arguments.of_file(entries.get("args"), scope.values, fixed, substituted, texts)
@@ -142,7 +144,9 @@ class Expansion:
             if key == "args" and isinstance(item.value, dict):
                 self.settings[key] = merged(self.settings.get(key, Item({}, item.place)), item)
             elif key in TOP_KEYS and key not in (*BLOCKS, "templates", "override") and not is_others:
-                self.settings[key] = item if key == "args" else self._values.substituted(item, scope)
+                self.settings[key] = (
+                    item if key == "args" else self._values.substituted(item, scope, is_text=key in _TEXTS)
+                )
 
     def _include(self, item: Item, scope: Scope, overridden: Item | None = None) -> Scope:
         """Include files; returns the scope with their templates."""
@@ -248,7 +252,7 @@ class Expansion:
     def _group(self, block: Item, scope: Scope, what: str = "group") -> None:
         if self._values.is_left_out(block, scope):
             return
-        settings = self._values.substituted(block.without("if", "unless", *BLOCKS), scope)
+        settings = self._values.substituted(block.without("if", "unless", *BLOCKS), scope, texts=_TEXTS)
         bodies = {key: item for key, item in block.entries.items() if key in BLOCKS}
         if self._checked(GroupBlock, settings.with_value({**settings.entries, **bodies}), block) is None:
             return
@@ -329,7 +333,7 @@ class Expansion:
             return
         with self._problems.of_node(name):
             item = self._values.substituted(
-                item.without("if", "unless", "template", "namespace"), scope, ("args", "command")
+                item.without("if", "unless", "template", "namespace"), scope, ("args", "command"), _TEXTS
             )
         if own is not None and not isinstance(own.value, str):
             item = item.with_value({**item.entries, "namespace": own})
@@ -380,7 +384,7 @@ class Expansion:
             return
         if self._is_taken(name, item, self.steps, "steps"):
             return
-        item = after_groups(self._values.substituted(item.without("if", "unless"), scope), scope.shared)
+        item = after_groups(self._values.substituted(item.without("if", "unless"), scope, texts=_TEXTS), scope.shared)
         for key in ("call", "set", "goal", "wait"):
             target = item.entries.get(key)
             if target is None or not isinstance(target.value, str):

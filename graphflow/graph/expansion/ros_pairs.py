@@ -20,6 +20,5 @@ def as_class(node: Item, root: Path) -> Item:
     found = find(package.value, name.value, root)
     if found is None or "class" in node.entries:  # having both is refused later
         return node
-    return node.with_value(
-        {"class": Item(found.class_path, name.place, name.key), **node.without("pkg", "exec").entries}
-    )
+    others = node.without("pkg", "exec", *(["lifecycle"] if found.is_always_active else []))
+    return node.with_value({"class": Item(found.class_path, name.place, name.key), **others.entries})

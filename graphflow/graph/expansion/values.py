@@ -53,17 +53,25 @@ class Values:
             if condition is None:
                 continue
             try:
-                value = self.made(condition.plain(), condition.place, scope)
+                value = self.made(condition.plain(), condition.place, scope, is_text=self._is_launch(condition.place))
                 left_out |= truth(value, condition.place.file) is not wanted
             except SubstitutionError as error:
                 self._problems.add_unknown(condition.place, f"{key}: {error}")
         return left_out
 
-    def made(self, value: Data, place: Place, scope: Scope, *, is_word: bool = False) -> Data:
-        """Make the substitutions in a text; any other value is returned unchanged."""
+    def _is_launch(self, place: Place) -> bool:
+        return place.file in self._problems.launch_files
+
+    def made(self, value: Data, place: Place, scope: Scope, *, is_word: bool = False, is_text: bool = False) -> Data:
+        """Make the substitutions in a text; any other value is returned unchanged.
+
+        Args:
+            is_word: Whether it is a word of a command line, which stays a text.
+            is_text: Whether it stays a text for another reason.
+        """
         if not isinstance(value, str):
             return value
-        if not is_word and place.file not in self._problems.launch_files:
+        if not is_word and not self._is_launch(place):
             for written, name in foreign_variables(value, scope.values):
                 self._problems.remark(place, f"{written} stays as it is; for the value of {name!r} write $(var {name})")
         if "$(" not in value:
@@ -73,17 +81,29 @@ class Values:
         variables = {name: str(text) for name, text in shared("env", scope.shared).items()}
         outside = self._outside.with_env(variables)
         try:
-            return Substitutions(scope.values, file, outside, params).apply(value, is_word=is_word)
+            made = Substitutions(scope.values, file, outside, params, is_launch=self._is_launch(place))
+            return made.apply(value, is_word=is_word or is_text)
         except SubstitutionError as error:
             self._problems.add_unknown(place, str(error))
             return value
 
-    def substituted(self, item: Item, scope: Scope, words: Collection[str] = (), *, is_word: bool = False) -> Item:
+    def substituted(
+        self,
+        item: Item,
+        scope: Scope,
+        words: Collection[str] = (),
+        texts: Collection[str] = (),
+        *,
+        is_word: bool = False,
+        is_text: bool = False,
+    ) -> Item:
         """Make every substitution in an item, in keys too.
 
         Args:
-            words: Keys of lists whose items stay texts.
-            is_word: Whether the item itself stays a text.
+            words: Keys of lists whose items are words of a command line.
+            texts: Keys of other values that stay texts.
+            is_word: Whether the item itself is such a word.
+            is_text: Whether the item itself, or all in it, stays a text.
         """
         if isinstance(item.value, dict):
             result: dict[str, Item] = {}
@@ -91,12 +111,14 @@ class Values:
                 name = str(self.made(key, inner.at, scope))
                 if name in result:
                     self._problems.add(inner.at, f"the key {key!r} becomes {name!r}, which is already here")
-                result[name] = self.substituted(inner, scope, is_word=name in words)
+                stays = is_text or name in texts
+                result[name] = self.substituted(inner, scope, is_word=name in words, is_text=stays)
             return item.with_value(result)
         if isinstance(item.value, list):
-            return item.with_value([self.substituted(inner, scope, is_word=is_word) for inner in item.value])
+            inside = (self.substituted(inner, scope, is_word=is_word, is_text=is_text) for inner in item.value)
+            return item.with_value([*inside])
         is_written = isinstance(item.value, Written)
-        value = self.made(item.value, item.place, scope, is_word=is_word or is_written)
+        value = self.made(item.value, item.place, scope, is_word=is_word or is_written, is_text=is_text)
         value = Written(value) if is_written else value
         self._count(value, item.place)
         return located(value, item.place).with_key(item.key)

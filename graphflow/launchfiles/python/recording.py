@@ -100,7 +100,7 @@ class Recording:
         file = Path(self.file)
         env = {**os.environ, **self.env}
         outside = Outside(env, project_root(file), newest_logs(file.name.removesuffix(".launch.py")), self.run)
-        return as_text(Substitutions(values, file, outside).apply(text))
+        return str(Substitutions(values, file, outside, is_launch=True).apply(text, is_word=True))
 
     def folder(self, what: str, package: str) -> str:
         """Return the `share` folder or `prefix` of a package; its substitution if the file is only converted.

@@ -118,7 +118,7 @@ def test_show_args(machine: Machine, tmp_path: Path) -> None:
     file = tmp_path / "g.yaml"
     file.write_bytes(
         b"\xef\xbb\xbfargs:\n  gain: {default: 5.0, unit: 1/s, doc: How sharply.}\n"
-        b"  name: {default: a}\n  mode:\nnodes: {}\n"
+        b"  name: {default: a, choices: [a, b]}\n  mode:\nnodes: {}\n"
     )
     assert machine.look("up", "-s", str(file)).splitlines() == [
         "Arguments (pass arguments as '<name>:=<value>'):",
@@ -128,7 +128,7 @@ def test_show_args(machine: Machine, tmp_path: Path) -> None:
         "        (default: 5.0)",
         "",
         "    'name':",
-        "        no description given",
+        "        no description given One of: ['a', 'b']",
         "        (default: 'a')",
         "",
         "    'mode':",

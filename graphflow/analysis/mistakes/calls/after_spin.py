@@ -58,10 +58,11 @@ def _destroyed(before: list[ast.stmt], spin: ast.stmt) -> Iterator[tuple[int, st
 
 
 def _assigned(statement: ast.stmt) -> Iterator[str]:
-    """Yield the names that a statement binds to what a call returns."""
+    """Yield the names that a statement binds to what a call returns, unless that is the future of a thread."""
     match statement:
-        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call()):
-            yield name
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=function)):
+            if last_name(function) not in ("submit", "run_coroutine_threadsafe"):
+                yield name
 
 
 def _results(statement: ast.stmt) -> Iterator[str]:

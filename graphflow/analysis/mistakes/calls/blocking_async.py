@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
-from graphflow.analysis.syntax import nodes_in, walk
+from graphflow.analysis.syntax import walk
 
 _SHORT = 0.05
 """Seconds that a sleep may take without anybody noticing."""
-_PAUSES = ast.Await | ast.AsyncFor | ast.AsyncWith | ast.Break | ast.Return | ast.Raise | ast.Yield | ast.YieldFrom
+_PAUSES = (ast.Await, ast.AsyncFor, ast.AsyncWith, ast.Break, ast.Return, ast.Raise, ast.Yield)
 """Syntax that lets others run, or ends a loop."""
 
 
@@ -25,9 +25,13 @@ def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
                 text = "time.sleep in an async def stops every handler of the process"
                 yield node.lineno, f"{text}; write await self.clock.sleep({ast.unparse(pause)})"
             case ast.While(test=ast.Constant(value=True | 1)):
-                if not any(isinstance(part, _PAUSES) for part in nodes_in(node)):
+                if not any(_pauses(part) for part, _ in walk(node, into_functions=False)):
                     text = "this loop never awaits, so no other handler of the process runs"
                     yield node.lineno, f"{text}; end each turn with await self.clock.sleep(0.1), or write @timer(0.1)"
+
+
+def _pauses(part: ast.AST) -> bool:
+    return isinstance(part, _PAUSES) or (isinstance(part, ast.comprehension) and bool(part.is_async))
 
 
 def _is_async(parents: Sequence[ast.AST]) -> bool:

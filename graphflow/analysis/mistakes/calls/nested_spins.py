@@ -17,6 +17,7 @@ def nested_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
     calls = [node for node in nodes_in(module) if isinstance(node, ast.Call)]
     given = [(call, TAKERS[last_name(call.func)]) for call in calls if last_name(call.func) in TAKERS]
     callbacks = {last_name(call.args[at]) for call, at in given if len(call.args) > at}
+    callbacks |= {last_name(k.value) for call, _ in given for k in call.keywords if k.arg == "callback"}
     for method in nodes_in(module):
         if not isinstance(method, FunctionNode) or method.name not in callbacks:
             continue

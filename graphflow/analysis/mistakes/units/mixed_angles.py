@@ -85,8 +85,7 @@ def _unit(expression: ast.expr, names: PoseNames, parents: Sequence[ast.AST], de
     """
     match expression:
         case ast.Call(func=function) if (name := names.called(function)) in (*_DEGREES, *_RADIANS, *_INVERSE):
-            is_named = any(keyword.arg == "deg" for keyword in expression.keywords)
-            return "" if is_named else "degrees" if name in _DEGREES else "radians"
+            return "degrees" if name in _DEGREES else "radians"
         case ast.Call(func=function) if last_name(function) == "Param":
             given = [
                 k.value.value for k in expression.keywords if k.arg == "unit" and isinstance(k.value, ast.Constant)

@@ -93,7 +93,7 @@ def _only_made(method: FunctionNode, messages: set[str]) -> Iterator[tuple[int, 
             case ast.Expr(value=ast.Call(func=function)) if last_name(function) in messages:
                 if not any(isinstance(parent, ast.With | ast.AsyncWith | ast.Try) for parent in parents):
                     yield node.lineno, f"{ast.unparse(node)} makes a message that nothing uses; publish it"
-            case ast.Assign(targets=[ast.Name(id=name)]) if name not in used and _is_made(node, messages):
+            case ast.Assign(targets=[ast.Name(id=name)]) if name not in used:  # hence a message
                 yield node.lineno, f"{name} is a message that nothing reads; publish it, as in .publish({name})"
 
 

@@ -80,7 +80,8 @@ def _is_unbounded(parents: Sequence[ast.AST]) -> bool:
 def _of_object(source: ClassSource, name: str, method: str) -> str:
     """Return the reason why the wait for an object never ends; empty if that is not known."""
     uses = source.uses(name)
-    made = {last_name(use.value.func) for use in uses if use.kind == "assigned" and isinstance(use.value, ast.Call)}
+    values = [use.value for use in uses if use.kind == "assigned" and not _is_none(use.value)]
+    made = {last_name(value.func) if isinstance(value, ast.Call) else "" for value in values}
     kind = _KINDS.get(made.pop()) if len(made) == 1 else None
     if kind is None or method != kind.waits or source.foreign(name):
         return ""
@@ -88,6 +89,10 @@ def _of_object(source: ClassSource, name: str, method: str) -> str:
     if any(use.kind != "called" or use.name not in kind.harmless for use in others):
         return ""
     return f"nothing {kind.does} it; call self.{name}.{kind.ends} in another handler"
+
+
+def _is_none(value: ast.AST | None) -> bool:
+    return isinstance(value, ast.Constant) and value.value is None
 
 
 def _polled(test: ast.expr) -> tuple[str, tuple[object, ...]]:

@@ -65,11 +65,12 @@ def test_the_result_of_a_future(use: str) -> None:
     [
         ("pass", "future = node.end()\n    print(future.result())"),
         ("future = None", "future = node.end()\n    print(future.result())"),
-        ("future = pool.submit(work)", "print(future.result(1.0))"),
+        ("future = pool.submit(work)", "print(future.result())"),
+        ("future = node.send()", "print(future.result(1.0))"),
     ],
 )
 def test_futures_of_the_end(before: str, after: str) -> None:
-    """One that is made after spin is awaited there in another way, as is one of a thread, with a limit."""
+    """One that is made after spin is awaited there in another way, as is one of a thread, and one that has a limit."""
     program = _PROGRAM.replace("    rclpy.spin", f"    {before}\n    rclpy.spin").format(after)
     assert list(after_spin(ast.parse(program))) == []
 

@@ -35,6 +35,12 @@ def test_a_loop_without_a_pause(condition: str) -> None:
     )
 
 
+def test_a_pause_of_another_function() -> None:
+    """It is none of the loop's."""
+    [(line, _)] = told("while True:\n    def work():\n        return 1\n    self.use(work)")
+    assert line == 3
+
+
 @pytest.mark.parametrize(
     "body",
     [
@@ -54,6 +60,7 @@ def test_sleeps_that_let_others_run(body: str) -> None:
     [
         "await self.clock.sleep(0.1)",
         "async for message in self.heard: self.use(message)",
+        "found = [message async for message in self.heard]",
         "async with self.lock: self.step()",
         "yield self.read()",
         "if self.read(): break",

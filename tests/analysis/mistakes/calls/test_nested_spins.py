@@ -26,6 +26,7 @@ TIMER = "self.create_timer(0.5, self.tick)"
         TIMER,
         "self.create_subscription(String, 'word', self.tick, 10)",
         "self.create_service(Empty, 'go', self.tick)",
+        "self.create_timer(timer_period_sec=0.5, callback=self.tick)",
     ],
 )
 def test_a_callback_that_spins(made: str) -> None:

@@ -91,6 +91,8 @@ def test_waits_without_an_end(told: Told, wait: str, text: str) -> None:
         ("await self.event.wait()", "keep(self.event)", "def keep(event): event.set()"),
         ("await self.event.wait()", "Robot.first.event.set()", ""),
         ("await self.event.wait()", "self.event = Gate()", ""),
+        ("await self.event.wait()", "self.event = message", ""),
+        ("print(await self.queue.get())", "self.queue, self.size = make()", ""),
         (
             "await self.event.wait(); print(await self.queue.get()); await self.lock.acquire()",
             "self.event = Gate(); self.queue = Store(); self.lock = Latch()",
