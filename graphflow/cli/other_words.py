@@ -148,6 +148,11 @@ _OPTIONS = {
     **dict.fromkeys(("bag record --split", "bag record --size"), "--max-bag-size BYTES starts another file"),
     "bag play -u": "--playback-duration limits the seconds to play",
     **dict.fromkeys(("bag play -i", "bag play --immediate"), "graphflow bag burst publishes all at once"),
+    **dict.fromkeys(
+        ("restart --all", "restart -a"),
+        "to restart the whole graph: graphflow up GRAPH.yaml --replace, or name the nodes",
+    ),
+    **dict.fromkeys(("stop --all", "stop -a"), "to stop the whole graph: graphflow down"),
     **dict.fromkeys(("launch --screen", "launch --log", "launch -v"), "leave it out: nodes' output is always shown"),
     **dict.fromkeys(
         ("logs --tail", "logs --last", "logs -t", "logs --num", "logs --count"),

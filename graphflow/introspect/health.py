@@ -27,6 +27,8 @@ LOST_PART, LOST_LEAST, EXPIRED_LEAST = 0.5, 20, 5
 """Share and number of dropped messages from which a loss is reported."""
 MISSED_LEAST = 3
 """Missed deadlines or leases of an endpoint from which they are reported."""
+RAISED_PART, REFUSED_PART = 0.1, 0.5
+"""Shares of runs that raise from which a handler, and a service that may refuse requests so, are reported."""
 SHOWN = 10
 """Most nodes in a list, or texts of one node."""
 SKEW = 0.1
@@ -73,6 +75,7 @@ def examine(view: View, first: Look, second: Look) -> Health:
         *_echoes(view.cache, then, counts, seconds),
         *_losses(counts),
         *_missed(counts),
+        *_raising(counts),
         *_floods(then, counts, seconds),
         *_refused(view.cache),
         *_complaints(now),
@@ -168,6 +171,15 @@ def _missed(now: Counts) -> Iterator[str]:
                 f"{part} of {node} has lost its liveliness {count:.0f} times: publish or assert_liveliness() within "
                 "its lease"
             )
+
+
+def _raising(now: Counts) -> Iterator[str]:
+    """Report handlers that fail often, but not so often that their node ends."""
+    for (node, part), numbers in now.items():
+        runs, errors = numbers.get("runs", 0.0), numbers.get("errors", 0.0)
+        share = REFUSED_PART if part.startswith("service ") else RAISED_PART
+        if errors >= max(1.0, share * runs):
+            yield f"{part} of {node} has raised in {errors:.0f} of {runs:.0f} runs: its log has the error and the line"
 
 
 def _floods(then: Counts, now: Counts, seconds: float) -> Iterator[str]:

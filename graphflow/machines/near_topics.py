@@ -61,7 +61,9 @@ def did_you_mean_topic(own: Entity, there: ByType) -> str:
         verbs, end = "listens to", f"to which {who} listen{'' if more else 's'}"
     else:
         verbs, end = "publishes", f"which {who} publish{'' if more else 'es'}"
-    return f"nobody {verbs} {own.name} [{own.type}]; did you mean {best!r}, {end}?"
+    is_absolute = own.namespace != "/" and best == own.namespace + own.name
+    way = f" Write {own.name[1:]!r}: a slash in front keeps the namespace out." if is_absolute else ""
+    return f"nobody {verbs} {own.name} [{own.type}]; did you mean {best!r}, {end}?{way}"
 
 
 def _only_one_of_type(own: Entity, names: Iterable[str]) -> str:

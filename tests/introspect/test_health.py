@@ -112,6 +112,23 @@ def test_promises_that_are_not_kept(count: int, is_told: bool) -> None:
     assert told == ([deadline, lease] if is_told else [])
 
 
+@pytest.mark.parametrize(
+    ("part", "runs", "errors", "is_told"),
+    [
+        ("timer tick", 10, 1, True),
+        ("timer tick", 11, 1, False),
+        ("timer tick", 0, 0, False),
+        ("service /ask", 10, 4, False),
+        ("service /ask", 10, 5, True),
+    ],
+)
+def test_handlers_that_raise(part: str, runs: int, errors: int, is_told: bool) -> None:
+    """A tenth of the runs is enough; a service may refuse a request by raising."""
+    told = found(Seen(), [], look(a={part: {"runs": runs, "errors": errors}})).faults
+    text = f"{part} of /a has raised in {errors} of {runs} runs: its log has the error and the line"
+    assert told == ([text] if is_told else [])
+
+
 def test_a_flood_in_a_log() -> None:
     """Lines that were gathered count, too."""
     before, now = look(a={"log": {"lines": 5, "gathered": 0}}), look(a={"log": {"lines": 25, "gathered": 300}})

@@ -63,6 +63,15 @@ def test_what_was_meant() -> None:
     )
 
 
+def test_a_slash_that_keeps_the_namespace_out() -> None:
+    """The name without it is the one that was meant."""
+    own = endpoint(Kind.SUBSCRIPTION, "follower", "/pose")._replace(namespace="/turtle1")
+    there = by_type([own, endpoint(Kind.PUBLISHER, "turtlesim", "/turtle1/pose")], {TWIST})
+    assert did_you_mean_topic(own, there).endswith(
+        "which /turtlesim publishes? Write 'pose': a slash in front keeps the namespace out."
+    )
+
+
 def test_what_was_meant_by_a_subscription() -> None:
     """Is told in its words; of several nodes one is named."""
     own = endpoint(Kind.SUBSCRIPTION, "base", "/cmd_vl")

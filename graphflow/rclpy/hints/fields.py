@@ -62,7 +62,8 @@ def timer_info(error: BaseException, frames: list[FrameType]) -> str:
     held = [f.f_locals.get("value") for f in frames if f.f_code.co_filename == values.__file__]
     is_set = isinstance(error, AssertionError) and any(type(value).__name__ == "TimerInfo" for value in held)
     is_used = isinstance(error, TypeError) and re.search(r"\bTimerInfo'?(?: and |$)", str(error)) is not None
-    return _TIMER_INFO if is_set or is_used else ""
+    is_read = isinstance(error, AttributeError) and type(error.obj).__name__ == "TimerInfo"
+    return _TIMER_INFO if is_set or is_used or is_read else ""
 
 
 _TIMER_INFO = (

@@ -77,6 +77,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: math.sin(TICK), "a timer calls a callback that has an argument with a TimerInfo"),
     (lambda n: float(TICK), "a timer calls a callback that has an argument with a TimerInfo"),
     (lambda n: TICK < 2.0, "a timer calls a callback that has an argument with a TimerInfo"),
+    (lambda n: TICK.get_logger(), "a timer calls a callback that has an argument with a TimerInfo"),
     (
         lambda n: setattr(n.header.stamp, "sec", TICK),
         "leave the argument out, or give it a value by functools.partial(self.callback, value)",

@@ -67,7 +67,8 @@ def _check(publisher: Unlatched, count: int, subscription: Entity, log: logging.
     if 0 < len(places) <= count:
         what, it = ("the only message was", "it is") if count == 1 else (f"all {count} messages were", "they are")
         log.warning(
-            "%s: %s published before the subscription of %s opened (%s), and %s not kept for it; give both "
+            "%s: %s published before the subscription of %s opened (%s), and %s not kept for it; await the "
+            "publisher's wait_matched() first, publish in a @timer, or give both "
             "Qos(depth=%d, durability=Durability.TRANSIENT_LOCAL)",
             *(own.name, what, subscription.node_name, ", ".join(map(str, places)), it, count),
         )

@@ -123,7 +123,8 @@ async def test_a_map_before_the_planner(graph: Graph, caplog: Caplog) -> None:
     await run(graph, MapServer(), Planner(), Planner("other"))
     assert told(caplog) == [
         "/map: the only message was published before the subscription of /planner opened (test_unkept.py:27), and it "
-        "is not kept for it; give both Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)"
+        "is not kept for it; await the publisher's wait_matched() first, publish in a @timer, or give both "
+        "Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)"
     ]
 
 
@@ -132,7 +133,8 @@ async def test_a_map_in_parts(graph: Graph, caplog: Caplog) -> None:
     await run(graph, Parts(), Planner())
     [text] = told(caplog)
     assert "all 2 messages were published before" in text
-    assert "(test_unkept.py:48, test_unkept.py:52), and they are not kept for it; give both Qos(depth=2, " in text
+    assert "(test_unkept.py:48, test_unkept.py:52), and they are not kept for it; await " in text
+    assert "or give both Qos(depth=2, " in text
 
 
 @pytest.mark.parametrize("kind", [Latched, Stopping, Patient, Each, Two])
