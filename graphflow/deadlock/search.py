@@ -258,12 +258,12 @@ class Search:
         if self._is_closed:
             return
 
-        def told(replies: list[bytes], is_all: bool) -> None:
-            if not self._is_closed:  # meanwhile
+        def receive_open(replies: list[bytes], is_all: bool) -> None:
+            if not self._is_closed:  # it may close meanwhile
                 receive(replies, is_all)
 
         self.pulls += 1
-        self._process.session.ask_reports(answer_key(self._process.domain, WAITS), PULL_LIMIT, told)
+        self._process.session.ask_reports(answer_key(self._process.domain, WAITS), PULL_LIMIT, receive_open)
 
     def _joint(self, replies: list[bytes]) -> Round:
         """Merge the snapshots of the processes that answered with this one's."""

@@ -171,8 +171,7 @@ class Supervisor:
         if len(self._processes) > MESH_LIMIT:
             self.note(no_mesh(len(self._processes)))
         self._start_startable()
-        if not self._processes:  # a launch file may have none
-            self._end_if_all_have()
+        self._end_if_all_have()  # a launch file may have no processes
         health = asyncio.create_task(Health(self._processes.values(), self.note).watch())
         slow = self._context.loop.call_later(SLOW_START, self._note_waits)
         await self.ended.wait()
@@ -429,8 +428,7 @@ class Supervisor:
         if left and all(p.state is State.PENDING for p in left) and not self._stopping:
             if any(not task.done() for task in self._step_tasks.values()):
                 return
-            needs = self._order.after[left[0].name] - self._met
-            unmet = ", ".join(f"{need.name} ({need.what})" for need in sorted(needs))
+            unmet = ", ".join(f"{n.name} ({n.what})" for n in sorted(self._order.after[left[0].name] - self._met))
             self._fail(f"{left[0].name} comes after {unmet}, which cannot happen any more")
             return
         running = [name for name, task in self._step_tasks.items() if not task.done()]

@@ -44,7 +44,7 @@ def test_executables(machine: Machine, robot: Path) -> None:
 def test_prefix(machine: Machine, robot: Path) -> None:
     """The prefix of the project's packages, and of those that come with graphflow, is printed."""
     assert machine.look("pkg", "prefix", "my_robot", cwd=robot) == f"{robot}\n"
-    assert machine.look("pkg", "prefix", "turtlesim", "--share") == f"{PROJECT}\n"
+    assert machine.look("pkg", "prefix", "demo_nodes_py", "--share") == f"{PROJECT}\n"
     assert "Package not found" in machine.look("pkg", "prefix", "nav2", code=1)
 
 
@@ -53,7 +53,7 @@ def test_xml(machine: Machine, robot: Path) -> None:
     assert machine.look("pkg", "xml", "my_robot", cwd=robot) == (robot / "package.xml").read_text()
     assert machine.look("pkg", "xml", "my_robot", "-t", "depend", cwd=robot) == "a\nb\n"
     assert "has no tag 'x'" in machine.look("pkg", "xml", "my_robot", "-t", "x", cwd=robot, code=2)
-    assert "turtlesim: no package.xml was found" in machine.look("pkg", "xml", "turtlesim", code=1)
+    assert "demo_nodes_py: no package.xml was found" in machine.look("pkg", "xml", "demo_nodes_py", code=1)
 
 
 @slow
