@@ -30,7 +30,7 @@ from graphflow.runtime.mistakes.unentered import Unentered
 from graphflow.runtime.mistakes.unread import unread
 from graphflow.runtime.node import Node
 from graphflow.runtime.node_arguments import refuse_keywords
-from graphflow.runtime.node_core import core_of
+from graphflow.runtime.node_core import NodeCore, core_of
 from graphflow.runtime.node_options import NodeOptions, make_within
 from graphflow.runtime.process_nodes import Company
 from graphflow.runtime.stop_limit import Interrupted
@@ -101,7 +101,8 @@ async def _block(nodes: Sequence[Node], context: Context | None) -> AsyncGenerat
             stack.callback(context.session.leave)
         try:
             async with asyncio.TaskGroup() as group:
-                watchers = [group.create_task(core_of(node).wait_ended()) for node in nodes]
+                entered = asyncio.current_task()
+                watchers = [group.create_task(_watch(core_of(node), entered)) for node in nodes]
                 try:
                     yield context
                 finally:
@@ -112,6 +113,22 @@ async def _block(nodes: Sequence[Node], context: Context | None) -> AsyncGenerat
             explain(failure)
         if failure is not None:  # raised here, where the group does not become its context
             raise failure
+
+
+async def _watch(core: NodeCore, entered: asyncio.Task[object] | None) -> None:
+    """Wait until a node ends.
+
+    Args:
+        entered: The task that has entered the block. In a notebook it is that of a cell, which may have ended: then
+            nothing can be cancelled, and the node's error is logged.
+    """
+    try:
+        await core.wait_ended()
+    except Exception as error:
+        if entered is None or not entered.done():
+            raise
+        core.log.error("%s", error)
+        await core.stop()
 
 
 async def serve(nodes: Sequence[Node], context: Context, stop: StopRequest) -> None:

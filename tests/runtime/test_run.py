@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import sys
+from contextlib import AsyncExitStack
 from typing import Any
 from unittest.mock import AsyncMock
 
@@ -205,6 +206,22 @@ async def test_a_nodes_failure_leaves_the_block(graphflow_runner: asyncio.Runner
     assert log == ["cancelled"]
     assert not bystander.is_running
     assert not failing.is_running
+    await context.close()
+
+
+async def test_a_nodes_failure_after_its_cell(
+    graphflow_runner: asyncio.Runner, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A notebook may enter the block in a cell that has ended: the error is logged, and the node stops."""
+    clock = ManualClock()
+    context, failing, stack = context_of(clock), Failing(), AsyncExitStack()
+    await asyncio.create_task(stack.enter_async_context(running(failing, context=context)))
+    await clock.advance(1.0)
+
+    assert not failing.is_running
+    assert [record.name for record in caplog.records if record.getMessage() == "broken"] == [failing.log.name]
+    assert not [record for record in caplog.records if record.name == "asyncio"]
+    await stack.aclose()
     await context.close()
 
 
