@@ -29,6 +29,7 @@ MISSED_LEAST = 3
 """Missed deadlines or leases of an endpoint from which they are reported."""
 RAISED_PART, REFUSED_PART = 0.1, 0.5
 """Shares of runs that raise from which a handler, and a service that may refuse requests so, are reported."""
+CLOCK = "/clock"
 SHOWN = 10
 """Most nodes in a list, or texts of one node."""
 SKEW = 0.1
@@ -82,7 +83,7 @@ def examine(view: View, first: Look, second: Look) -> Health:
         *_skews(view.processes(), second),
     ]
     near, far = _unheard(view.cache)
-    return Health([*faults, *near], [*far, *_strangers(view)])
+    return Health([*faults, *near], [*far, *_on_system_time(view.cache), *_strangers(view)])
 
 
 def read(replies: Iterable[bytes]) -> Counts:
@@ -239,6 +240,20 @@ def _strangers(view: View) -> Iterator[str]:
         if nodes:
             more = f" and {len(nodes) - SHOWN} more" if len(nodes) > SHOWN else ""
             yield f"{', '.join(nodes[:SHOWN])}{more} on another machine, {host}"
+
+
+def _on_system_time(cache: GraphCache) -> Iterator[str]:
+    """Yield the nodes that do not follow a simulated time, beside the one that publishes it."""
+    simulators, followers = (
+        {e.node_name for e in cache.endpoints(kind, CLOCK)} for kind in (Kind.PUBLISHER, Kind.SUBSCRIPTION)
+    )
+    others = sorted({*cache.nodes(hidden=False)} - simulators - followers)
+    if simulators and others:
+        more = f" and {len(others) - SHOWN} more" if len(others) > SHOWN else ""
+        yield (
+            f"{', '.join(others[:SHOWN])}{more} on the system's time, though {min(simulators)} publishes {CLOCK}; "
+            "to follow that: -p use_sim_time:=true"
+        )
 
 
 def _answer(reply: bytes) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""Errors of tasks and futures that nobody awaits, such as `asyncio.create_task`'s: logged as errors of handlers are."""
+"""Errors that nobody awaits, of `asyncio.create_task` or `call_later`: logged as errors of handlers are."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ class _LostErrors:
         error, future = context.get("exception"), context.get("future") or context.get("task")
         if isinstance(error, BaseException):
             explain(error)
-        is_lost = "never retrieved" in str(context.get("message"))
-        if not isinstance(error, BaseException) or future is None or not is_lost:
+        is_lost = future is not None and "never retrieved" in str(context.get("message"))
+        if not isinstance(error, BaseException) or not (is_lost or "handle" in context):
             loop.default_exception_handler(context)
             return
         if isinstance(error, ClosedError):  # its node has stopped in the meantime
             logger.debug("lost: %s", error)
             return
         coroutine = future.get_coro() if isinstance(future, asyncio.Task) else None
-        name = getattr(coroutine, "__qualname__", "") or "a future"
+        name = getattr(coroutine, "__qualname__", "") or ("a future" if is_lost else "a callback of the event loop")
         key = name, f"{type(error).__name__} {place_in(error)}"
         if len(self._times) >= PLACES_BOUND:
             self._times.clear()
@@ -49,4 +49,5 @@ class _LostErrors:
         if str(times).strip("0") == "1":  # 1, 10, 100 and so on
             again = f", {times} times by now" if times > 1 else ""
             way = "await it, or start it with self.spawn(...), which ends the node on an error"
-            report(logger, f"{name} failed, and nothing awaits it{again} ({way})", error)
+            what = f"failed, and nothing awaits it{again} ({way})" if is_lost else f"failed{again}"
+            report(logger, f"{name} {what}", error)

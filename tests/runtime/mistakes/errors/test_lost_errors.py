@@ -47,6 +47,26 @@ async def test_they_are_told(graphflow_runner: asyncio.Runner, caplog: pytest.Lo
     assert callback.startswith("a callback failed")
 
 
+async def test_a_callback_of_the_loop(graphflow_runner: asyncio.Runner, caplog: pytest.LogCaptureFixture) -> None:
+    """Its error is told in the same way, and as seldom."""
+    loop = asyncio.get_running_loop()
+    log_lost_errors(loop)
+
+    def call() -> None:
+        raise ValueError("boom")
+
+    try:
+        for _ in range(12):
+            loop.call_soon(call)
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+    finally:
+        loop.set_exception_handler(None)
+    first, tenth = [record.getMessage() for record in caplog.records if record.levelno >= logging.ERROR]
+    assert first == "a callback of the event loop failed: ValueError: boom"
+    assert tenth == "a callback of the event loop failed, 10 times by now: ValueError: boom"
+
+
 async def test_many_kinds_of_errors(graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only so many are counted."""
     monkeypatch.setattr(lost_errors, "PLACES_BOUND", 2)
