@@ -115,13 +115,13 @@ def test_promises_that_are_not_kept(count: int, is_told: bool) -> None:
 def test_nodes_on_the_systems_time() -> None:
     """Beside a simulated one; those that set it or follow it are fine."""
     clock = "rosgraph_msgs/msg/Clock"
-    tokens = [entity_token(node) for node in ("/sim", "/a", "/b", "/_tool")]
-    tokens.append(entity_token("/b", kind=SUB, name="/clock", type_=clock))
+    tokens = [entity_token(node, zid=node[1:2]) for node in ("/sim", "/a", "/b", "/_tool")]
+    tokens.append(entity_token("/b", zid="b", kind=SUB, name="/clock", type_=clock))
     assert found(Seen(*tokens), [], []).hints == []
-    tokens.append(entity_token("/sim", kind=PUB, name="/clock", type_=clock))
+    tokens.append(entity_token("/sim", zid="s", kind=PUB, name="/clock", type_=clock))
     text = "/a on the system's time, though /sim publishes /clock; to follow that: -p use_sim_time:=true"
     assert found(Seen(*tokens), [], []).hints == [text]
-    many = [entity_token(f"/n{number}") for number in range(10)]
+    many = [entity_token(f"/n{number}", zid=f"n{number}") for number in range(10)]
     assert " and 1 more on the system's time" in found(Seen(*tokens, *many), [], []).hints[0]
 
 
