@@ -235,6 +235,7 @@ class _Settings(_Model):
 
     namespace: StrictStr = ""
     params: dict[str, object] = {}
+    params_file: StrictStr | list[StrictStr] = []
     remap: dict[str, StrictStr] = {}
     env: dict[str, EnvValue] = {}
     restart: RestartSpec | None = None
@@ -274,11 +275,11 @@ class NodeSpec(_Settings):
     keep_names: StrictBool = False
     prefix: StrictStr = ""
     template: StrictStr = ""
-    params_file: StrictStr | list[StrictStr] = []
     process: StrictStr = ""
     after: After = {}
     concurrency: dict[str, GroupSpec] = {}
     shared_params: dict[str, object] = Field({}, alias="params of groups")
+    shared_params_file: list[StrictStr] = Field([], alias="params_file of groups")
     shared_remap: dict[str, StrictStr] = Field({}, alias="remap of groups")
 
     @model_validator(mode="before")

@@ -161,6 +161,7 @@ class _ParamsFiles:
     def params(self, spec: NodeSpec, at: source.Path, node: str) -> dict[str, Setting]:
         """Return the parameters for a node in its files; later files win."""
         found: dict[str, Setting] = {}
+        shared = {place for _, place in self._shared(spec, at)}  # which need not be for each node
         for name, place in self._named(spec, at):
             path = self._path(name, place)
             if path not in self._files:
@@ -168,7 +169,7 @@ class _ParamsFiles:
             sections = self._files[path]
             if place.file not in self._problems.launch_files:
                 self._strict.add(path)
-            if sections and not any(s.fits(node) for s in sections):
+            if place not in shared and sections and not any(s.fits(node) for s in sections):
                 self._problems.add_unless_ros(
                     place, f"{name} has nothing for {node}{params_file.hint_for(sections, node)}"
                 )
@@ -188,7 +189,13 @@ class _ParamsFiles:
 
     def _named(self, spec: NodeSpec, at: source.Path) -> list[tuple[str, Place]]:
         names = [spec.params_file] if isinstance(spec.params_file, str) else spec.params_file
-        return [(name, self._src.place((*at, i))) for i, name in enumerate(names)]
+        own = [(name, self._src.place((*at, "params_file", i))) for i, name in enumerate(names)]
+        return [*self._shared(spec, at), *own]
+
+    def _shared(self, spec: NodeSpec, at: source.Path) -> list[tuple[str, Place]]:
+        """Return the files of the groups around a node, the outermost first."""
+        at = (*at, f"params_file{FROM_GROUPS}")
+        return [(name, self._src.place((*at, i))) for i, name in enumerate(spec.shared_params_file)]
 
     def _path(self, name: str, place: Place) -> Path:
         return self._graph_files[place.file].parent / name
@@ -221,8 +228,8 @@ def _nodes(
         command = programs.command(spec, base)
         if command is None:
             continue
-        reads = files.checked(spec, (*base, "params_file")) if spec.exec_ else ()
-        known = {} if spec.exec_ else files.params(spec, (*base, "params_file"), name)
+        reads = files.checked(spec, base) if spec.exec_ else ()
+        known = {} if spec.exec_ else files.params(spec, base, name)
         nodes[name] = PlannedNode(
             name=name,
             class_path="" if spec.class_ == NO_CLASS else spec.class_,

@@ -42,13 +42,6 @@ def children(item: Item) -> list[Item]:
     return found.items if found is not None else []
 
 
-def items(item: Item | None) -> list[Item]:
-    """Return the items of a list; any other value counts as its only item."""
-    if item is None:
-        return []
-    return item.value if isinstance(item.value, list) else [item]
-
-
 def words(item: Item | None) -> list[str]:
     """Return the words of a text, or of a list of words."""
     if item is None:

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from graphflow.launchfiles.attributes import items
 from graphflow.launchfiles.settings import conditions
 from graphflow.markup.source import Complain
-from graphflow.markup.tree import Item
+from graphflow.markup.tree import Item, items
 from graphflow.names import did_you_mean
 from graphflow.workspace import executables
 

@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from graphflow.errors import Place
-from graphflow.launchfiles.attributes import children, has_value, items, split
+from graphflow.launchfiles.attributes import children, has_value, split
 from graphflow.launchfiles.attributes import words as words_of
 from graphflow.launchfiles.bodies import add, extend, put
 from graphflow.launchfiles.commands import one_word_fault, plain_words, step_of, typed
@@ -29,7 +29,7 @@ from graphflow.launchfiles.known_actions import CONDITIONS, FORMER, RECORDED, SA
 from graphflow.launchfiles.recorded import Action
 from graphflow.launchfiles.settings import as_text, conditional, conditions, pair, params, ros_arguments, setting
 from graphflow.markup.source import Complain, Data, Scalar
-from graphflow.markup.tree import Item, located
+from graphflow.markup.tree import Item, items, located
 from graphflow.workspace import executables
 from graphflow.workspace.packages import bundled, find_workspace
 
@@ -38,7 +38,10 @@ FROM_LAUNCH = "from a launch file"
 
 PATIENCE = 60.0
 """Timeout in seconds of a `ros2` command that becomes a step; ROS's own would wait for a server for ever."""
-_SCOPING = ("push_ros_namespace", "set_parameter", "set_remap", "set_env", "append_env", "set_use_sim_time", "let")
+_SCOPING = (
+    *("push_ros_namespace", "set_parameter", "set_parameters_from_file", "set_remap", "set_use_sim_time"),
+    *("set_env", "append_env", "let"),
+)
 
 
 def is_launch_file(top: Item) -> bool:

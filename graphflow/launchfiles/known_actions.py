@@ -39,6 +39,7 @@ _KNOWN: dict[str, set[str]] = {
     "executable": {"cmd", "cwd", "shell", *_RUN},
     "push_ros_namespace": {"namespace", *CONDITIONS},
     "set_parameter": {"name", "value", "type", *CONDITIONS},
+    "set_parameters_from_file": {"filename", *CONDITIONS},
     "set_remap": {"from", "to", *CONDITIONS},
     "set_use_sim_time": {"value", *CONDITIONS},
     "timer": {"period", "children", *CONDITIONS, *RECORDED},
@@ -52,7 +53,6 @@ SAME = {"ros_timer": "timer", "push-ros-namespace": "push_ros_namespace", "lifec
 _ELSEWHERE = {
     "unset_env": "write env: in a group or at a node",
     "reset_env": "write env: in a group or at a node",
-    "set_parameters_from_file": "write param: [{from: FILE}] at the nodes",
     "set_ros_log_dir": "set the environment variable ROS_LOG_DIR",
 }
 FORMER = {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from graphflow.launchfiles.attributes import has_value, items
+from graphflow.launchfiles.attributes import has_value
 from graphflow.launchfiles.attributes import words as words_of
 from graphflow.launchfiles.commands import typed
 from graphflow.markup import ros1_words
@@ -12,7 +12,7 @@ from graphflow.markup.param_types import as_type
 from graphflow.markup.source import Complain
 from graphflow.markup.substitution_words import as_word
 from graphflow.markup.substitutions import Written
-from graphflow.markup.tree import Item, located
+from graphflow.markup.tree import Item, items, located
 from graphflow.names import did_you_mean
 
 _OPTIONS = {"-r": "remap", "--remap": "remap", "-p": "params", "--param": "params"}
@@ -32,6 +32,12 @@ def setting(name: str, item: Item, complain: Complain) -> tuple[str, Item]:
             kind = str(item.entries["type"].value) if "type" in item.entries else "yaml"
             values = {key: parameter(value, kind, complain) for key, value in named.entries.items()}
             return "params", named.with_value(values)
+        case "set_parameters_from_file":
+            file = item.entries.get("filename")
+            if file is None or not file.value:
+                complain(item.at, "set_parameters_from_file: the attribute 'filename' is missing")
+                return "params_file", Item([], item.place)
+            return "params_file", Item([file], file.place)
         case "set_use_sim_time":
             value = typed(item.entries.get("value", Item("", item.place)))
             return "params", Item({"use_sim_time": value}, item.place)

@@ -100,6 +100,13 @@ def located(value: Data, place: Place) -> Item:
     return Item(value, place)
 
 
+def items(item: Item | None) -> list[Item]:
+    """Return the items of a list; any other value counts as its only item."""
+    if item is None:
+        return []
+    return item.value if isinstance(item.value, list) else [item]
+
+
 def merged(base: Item, over: Item, by_entry: tuple[str, ...] = ()) -> Item:
     """Merge two mappings; the entries of `over` replace those of `base`.
 

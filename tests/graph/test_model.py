@@ -21,8 +21,10 @@ def test_the_smallest_file() -> None:
 
 def test_keys_are_those_written_in_files() -> None:
     """`class` is a key; Python's name for it is not."""
-    words = "namespace params remap env restart on_exit critical log_level lifecycle if unless class command"
-    more = "pkg exec args keep_names prefix template params_file process after concurrency"
+    words = (
+        "namespace params params_file remap env restart on_exit critical log_level lifecycle if unless class command"
+    )
+    more = "pkg exec args keep_names prefix template process after concurrency"
     assert keys_of(NodeSpec) == [*words.split(), *more.split()]
     words = "call set goal wait delay log shutdown type request params after timeout if unless"
     assert keys_of(StepSpec) == words.split()

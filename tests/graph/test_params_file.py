@@ -211,6 +211,17 @@ def test_a_graph_takes_values_from_files(tmp_path: Path) -> None:
     assert problem.place.file.endswith("p.yaml")
 
 
+def test_a_file_of_a_group(tmp_path: Path) -> None:
+    """Comes before a node's own, may have nothing for one of them, and its path begins at the graph file."""
+    graph = "group: {params_file: p.yaml, nodes: {/a: {class: x:A}, /b: {class: x:B, params_file: [q.yaml]}}}"
+    p = "'/a': {ros__parameters: {rate: 1.0}}\n'/b': {ros__parameters: {gain: 2.0, speed: 3.0}}\n"
+    a, b = plan_of(tmp_path, graph, p=p, q="b: {ros__parameters: {gain: 5.0}}").nodes
+    assert {k: s.value for k, s in a.params.items()} == {"rate": 1.0}
+    assert {k: s.value for k, s in b.params.items()} == {"gain": 5.0, "speed": 3.0}
+    a, b = plan_of(tmp_path, graph, p="'/a': {ros__parameters: {rate: 1.0}}\n", q="b: {ros__parameters: {}}").nodes
+    assert (len(a.params), len(b.params)) == (1, 0)
+
+
 def test_a_wildcard_must_mean_somebody(tmp_path: Path) -> None:
     """What is there for many nodes may miss some of them, and not all."""
     graph = "nodes: {/a: {class: x:A, params_file: p.yaml}}"

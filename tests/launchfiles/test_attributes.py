@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.launchfiles.attributes import children, has_value, items, output_fault, words
+from graphflow.launchfiles.attributes import children, has_value, output_fault, words
 from graphflow.markup import source
 from graphflow.markup.tree import Item, tree
 
@@ -19,12 +19,6 @@ def test_children() -> None:
     """A list, or nothing."""
     assert [c.plain() for c in children(read("{children: [1, 2]}\n"))] == [1, 2]
     assert children(read("{children: 3}\n")) == children(read("{a: 1}\n")) == []
-
-
-def test_items() -> None:
-    """One alone may stand without a list."""
-    entries = read("{a: [1, 2], b: 3}\n").entries
-    assert [[i.plain() for i in items(entries.get(key))] for key in ("a", "b", "c")] == [[1, 2], [3], []]
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,7 @@ def complained(place: Place, text: str) -> None:
         ("push_ros_namespace", {"namespace": "lab", "unless": "$(var x)"}, ("namespace", "$(if $(var x) '' lab)")),
         ("set_parameter", {"name": "rate", "value": "2"}, ("params", {"rate": 2})),
         ("set_use_sim_time", {"value": "true"}, ("params", {"use_sim_time": True})),
+        ("set_parameters_from_file", {"filename": "p.yaml"}, ("params_file", ["p.yaml"])),
         ("set_remap", {"from": "a", "to": "b"}, ("remap", {"a": "b"})),
         ("set_env", {"name": "A", "value": "1"}, ("env", {"A": "1"})),
         (
@@ -38,6 +39,14 @@ def test_what_holds_for_all_that_follows(name: str, said: Any, expected: tuple[s
     """Becomes a setting of a group; variables stay texts."""
     key, value = setting(name, located(said, HERE), complained)
     assert (key, value.plain()) == expected
+
+
+def test_a_missing_file_is_told() -> None:
+    """With its attribute, and where."""
+    told: list[str] = []
+    item = located({"file": "p.yaml"}, HERE)
+    _, value = setting("set_parameters_from_file", item, lambda place, text: told.append(f"{place}: {text}"))
+    assert (value.plain(), told) == ([], ["f.yaml:1:1: set_parameters_from_file: the attribute 'filename' is missing"])
 
 
 def test_a_missing_attribute_is_told() -> None:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from graphflow.errors import Place
 from graphflow.markup import source
-from graphflow.markup.tree import Item, first_of, located, merged, shared, source_of, tree
+from graphflow.markup.tree import Item, first_of, items, located, merged, shared, source_of, tree
 
 TEXT = "a: 1\nb: {c: [x, {d: 2}], e: }\n"
 HERE, THERE = Place("f.yaml", 1, 1), Place("g.yaml", 2, 2)
@@ -21,6 +21,12 @@ def test_there_and_back() -> None:
     assert top.plain() == src.data
     assert top.entries["b"].at == Place("f.yaml", 2, 1)
     assert top.entries["b"].entries["c"].items[1].entries["d"].place == Place("f.yaml", 2, 16)
+
+
+def test_items() -> None:
+    """One alone may stand without a list."""
+    entries = tree(source.read("{a: [1, 2], b: 3}\n", "f.yaml")).entries
+    assert [[i.plain() for i in items(entries.get(key))] for key in ("a", "b", "c")] == [[1, 2], [3], []]
 
 
 VALUES = st.recursive(

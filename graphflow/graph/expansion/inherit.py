@@ -8,7 +8,7 @@ from graphflow.errors import Place
 from graphflow.graph.checks.validation import Problems, unknown_key
 from graphflow.graph.model import FROM_GROUPS, NodeSpec, keys_of
 from graphflow.markup.source import Data
-from graphflow.markup.tree import Item, first_of, merged
+from graphflow.markup.tree import Item, first_of, items, merged
 from graphflow.names import did_you_mean
 
 BY_ENTRY = ("params", "remap", "env")
@@ -54,6 +54,9 @@ def with_groups(item: Item, groups: Sequence[Mapping[str, Item]]) -> Item:
             entries["env"] = own.with_value(first_of([own.entries, of_groups]))
         else:
             entries[f"{key}{FROM_GROUPS}"] = Item(of_groups, item.place)
+    files = [file for group in reversed(groups) if "params_file" in group for file in items(group["params_file"])]
+    if files:
+        entries[f"params_file{FROM_GROUPS}"] = Item(files, item.place)
     return item.with_value(entries)
 
 

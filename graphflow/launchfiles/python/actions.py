@@ -382,6 +382,9 @@ _CONVERTERS: dict[str, Callable[[RecordedCall], Action | list[Action]]] = {
     "SetEnvironmentVariable": lambda call: Action("set_env", _named_value(call)),
     "AppendEnvironmentVariable": _append_env,
     "SetParameter": _set_parameter,
+    "SetParametersFromFile": lambda call: Action(
+        "set_parameters_from_file", {"filename": text(call.get("filename", 0))}
+    ),
     "SetRemap": _set_remap,
     "SetUseSimTime": lambda call: Action("set_use_sim_time", {"value": plain(call.get("value", 0))}),
     **dict.fromkeys(
@@ -389,7 +392,7 @@ _CONVERTERS: dict[str, Callable[[RecordedCall], Action | list[Action]]] = {
         lambda call: Action("push_ros_namespace", {"namespace": text(call.get("namespace", 0))}),
     ),
     "GroupAction": _group,
-    "TimerAction": _timer,
+    **dict.fromkeys(("TimerAction", "RosTimer", "ROSTimer"), _timer),
     "IncludeLaunchDescription": _include,
     **dict.fromkeys(("LogInfo", "Log"), lambda call: Action("log", {"message": text(call.get("msg", default=""))})),
     "UnregisterEventHandler": lambda _: [],

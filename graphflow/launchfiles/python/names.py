@@ -20,7 +20,8 @@ NAMES = {
     "LocalSubstitution NotEqualsSubstitution NotSubstitution OrSubstitution PathJoinSubstitution PythonExpression "
     "TextSubstitution ThisLaunchFile ThisLaunchFileDir",
     "launch_ros.actions": "ComposableNodeContainer LifecycleNode LifecycleTransition LoadComposableNodes Node "
-    "PushROSNamespace PushRosNamespace RosTimer SetParameter SetParametersFromFile SetROSLogDir SetRemap SetUseSimTime",
+    "PushROSNamespace PushRosNamespace ROSTimer RosTimer SetParameter SetParametersFromFile SetROSLogDir SetRemap "
+    "SetUseSimTime",
     "launch_ros.descriptions": "ComposableNode Parameter ParameterFile ParameterValue",
     "launch_ros.substitutions": "ExecutableInPackage FindPackagePrefix FindPackageShare Parameter",
 }
@@ -43,6 +44,7 @@ BASES = {
     "UnlessCondition": "IfCondition",
     "LaunchConfigurationNotEquals": "LaunchConfigurationEquals",
     "RosTimer": "TimerAction",
+    "ROSTimer": "TimerAction",
     "ExecutableInPackage": "FindPackagePrefix",
     "PathSubstitution": "Substitution",
     "PythonLaunchDescriptionSource": "LaunchDescriptionSource",

@@ -28,10 +28,13 @@ RegisterEventHandler event_handler |
 SetEnvironmentVariable name value |
 SetLaunchConfiguration name value |
 SetParameter name value |
+SetParametersFromFile filename | node_name
 SetRemap src dst |
 SetUseSimTime value |
 Shutdown | reason due_to_sigint
 TimerAction | period actions cancel_on_shutdown
+RosTimer | period actions cancel_on_shutdown
+ROSTimer | period actions cancel_on_shutdown
 """
 _OF_XML = {"exec": "executable", "pkg": "package", "ns": "namespace", "param": "parameters", "remap": "remappings"}
 """Parameters by their attribute names in XML and YAML launch files."""

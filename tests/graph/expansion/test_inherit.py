@@ -24,6 +24,11 @@ HERE = Place("f.yaml", 1, 1)
             [{"env": {"A": "inner", "B": "inner"}, "params": {"y": 2}}, {"params": {"y": 3, "z": 4}}],
             {"env": {"A": "own", "B": "inner"}, "params": {"x": 1}, "params of groups": {"y": 2, "z": 4}},
         ),
+        (
+            {"params_file": "own.yaml"},
+            [{"params_file": ["b.yaml", "c.yaml"]}, {"params_file": "a.yaml"}],
+            {"params_file": "own.yaml", "params_file of groups": ["a.yaml", "b.yaml", "c.yaml"]},
+        ),
     ],
 )
 def test_the_nearest_says_it(node: Any, groups: list[Any], expected: Any) -> None:
