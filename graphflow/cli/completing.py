@@ -11,6 +11,7 @@ import click
 from graphflow.errors import GraphflowError
 
 _PLAIN = re.compile(r"[\w/.~-]+", re.ASCII)
+"""A name without a character that is special to a shell."""
 NAMES = ("NODE", "NODES", "TOPIC", "TOPICS", "SERVICE", "ACTION")
 LIVE = (*NAMES, "TYPE", "PARAMETER", "PARAMETERS")
 """Arguments that are completed from the running graph."""
@@ -39,7 +40,7 @@ def choices(words: Sequence[str], partial: str) -> list[str]:
     if (command.name, len(given)) in (("run", 0), ("run", 1)) or (what == "PACKAGE" and command.name in PACKAGED):
         return sorted(name for name in _started_by(given, command.name) if name.startswith(partial))
     if what.startswith("GRAPH.yaml") and not given:
-        return sorted(name for name in {*_graphs(), *_files(partial)} if name.startswith(partial))
+        return sorted(n for n in {*_graphs(), *_files(partial)} if n.startswith(partial) and _PLAIN.fullmatch(n))
     mark = partial[:1] if partial[:1] in ("'", '"') else ""
     try:
         found = _names_for(what, given, mark or "'")

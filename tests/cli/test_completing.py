@@ -56,6 +56,16 @@ def test_without_a_graph(machine: Machine, words: str, partial: str, found: list
         assert choices(words.split(), partial) == found
 
 
+def test_files_that_a_shell_might_obey(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Are not offered; others are, and folders that may have some."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "zoo").mkdir()
+    for name in ("zebra.yaml", "zebra.txt", "z$(id).yaml"):
+        (tmp_path / name).touch()
+    assert choices(["up"], "z") == ["zebra.yaml", "zoo/"]
+    assert choices(["up", "zebra.yaml"], "z") == []
+
+
 @pytest.fixture
 def there(standing: Machine) -> Iterator[None]:
     """Completions come from the standing graph."""
