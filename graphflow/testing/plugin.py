@@ -146,10 +146,10 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                 "a fixture has started nodes in an event loop other than the test's: mark the test for the "
                 "fixture's plugin, as with @pytest.mark.asyncio"
             )
-        began = time.monotonic()
+        began, waits = time.monotonic(), list[str]()
         try:
             async with asyncio.timeout(_limit(item)) as limit:
-                watching = asyncio.create_task(_end_when_idle(limit)) if graph is not None else None
+                watching = asyncio.create_task(_end_when_idle(limit, graph, waits)) if graph is not None else None
                 try:
                     await test(*args, **kwargs)
                     if graph is not None:
@@ -167,7 +167,7 @@ def _limited(item: pytest.Function, test: Test) -> Test:
         except TimeoutError as error:
             ended = error.__cause__ or error.__context__  # Python 3.11.3 and later set the cause
             if isinstance(ended, asyncio.CancelledError):
-                error.add_note(_too_long(ended, time.monotonic() - began))
+                raise TimeoutError(_too_long(ended, time.monotonic() - began, waits)) from ended
             raise
         finally:
             # Closes an example's own graph, and the fixture's too, whose loop another plugin may close before the end.
@@ -248,24 +248,33 @@ def _by_examples(item: pytest.Function, test: Test) -> Test:
     return example
 
 
-async def _end_when_idle(limit: asyncio.Timeout) -> None:
-    """End a test that stands still: it waits for time to pass, and its clock does not move."""
+async def _end_when_idle(limit: asyncio.Timeout, graph: Graph, waits: list[str]) -> None:
+    """End a test that stands still: it waits for time to pass, and its clock does not move.
+
+    Args:
+        waits: Receives a sentence for each service that is waited for in vain.
+    """
     idle = 0.0
     while idle < IDLE_LIMIT:
         used, step = time.process_time(), min(1.0, IDLE_LIMIT)
         await asyncio.sleep(step)
         idle = idle + step if time.process_time() - used < IDLE * step else 0.0
+    from graphflow.testing.unmet import unserved
+
+    waits += unserved(graph)
     limit.reschedule(asyncio.get_running_loop().time())
 
 
-def _too_long(ended: BaseException, seconds: float) -> str:
+def _too_long(ended: BaseException, seconds: float, waits: list[str]) -> str:
     """Return the report of a test that has not ended; its clock stands still unless advanced."""
     from graphflow.analysis.user_code import place_in
 
     where = place_in(ended)
+    text = f"the test was not done after {seconds:.0f} s{f', and waited in {where}' if where else ''}"
+    if waits:
+        return f"{text}: {'; '.join(waits)}"
     return (
-        f"the test was not done after {seconds:.0f} s{f', and waited in {where}' if where else ''}. If it waits for "
-        "time, or for a node that is not there, advance the clock meanwhile: "
+        f"{text}. If it waits for time, or for a node that is not there, advance the clock meanwhile: "
         "start it with asyncio.ensure_future, then await graph.clock.advance(1.0). If it works that long, mark it with "
         f"@pytest.mark.timeout({2 * seconds:.0f})"
     )

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import ast
 import asyncio
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from graphflow.analysis.frames import awaited, code_of
+from graphflow.analysis.syntax import nodes_in
 from graphflow.deadlock.startup_waits import place_of
+from graphflow.errors import Place
 from graphflow.executor import clock as executor_clock
 from graphflow.machines.near_topics import is_misspelt
 from graphflow.names import did_you_mean, is_hidden
 from graphflow.runtime.endpoints.timer import Timer
+from graphflow.runtime.mistakes.source.shadowing import definition_of
 from graphflow.runtime.node_core import NodeCore, core_of
 from graphflow.wire.liveliness import Kind
 
@@ -27,7 +31,7 @@ async def unmet(graph: Graph) -> list[str]:
     cores = [core_of(node) for node in graph.nodes if node is not graph.tester and node.is_running]
     before = [len(tap) for _, tap in graph.taps]
     has_stood_still = not graph.clock.monotonic_ns() and any(map(_waits_for_time, cores))
-    found = [*_sleepers(cores), *_unserved(cores)]
+    found = [*_sleepers(cores), *unserved(graph)]
     await graph.settle()
     for (topic, tap), count in zip(graph.taps, before, strict=False):
         if len(tap) > count:
@@ -39,7 +43,21 @@ async def unmet(graph: Graph) -> list[str]:
         found.append("the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)")
     if not found and any(not tap for _, tap in graph.taps):
         found += _unfed(graph, cores)
-    return found
+    return found or [*_real_times(cores)]
+
+
+_REAL_TIMES = ("time.time", "time.monotonic", "time.perf_counter", "datetime.now")
+"""Calls that read a clock which no test moves."""
+
+
+def _real_times(cores: list[NodeCore]) -> Iterator[str]:
+    """Find the lines of nodes that read the real time."""
+    for cls in dict.fromkeys(type(core.instance) for core in cores):
+        found = definition_of(cls)
+        for node in nodes_in(found[0]) if found is not None else ():
+            if found is not None and isinstance(node, ast.Call) and ast.unparse(node.func) in _REAL_TIMES:
+                text = "reads the real time, and a test moves the graph's: write self.clock.now()"
+                yield f"{Place(found[1], node.lineno)} {text}"
 
 
 def _unfed(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:
@@ -78,8 +96,9 @@ def _sleepers(cores: list[NodeCore]) -> Iterator[str]:
                 )
 
 
-def _unserved(cores: list[NodeCore]) -> Iterator[str]:
-    """Find services and actions that nodes wait for, and that no node offers."""
+def unserved(graph: Graph) -> Iterator[str]:
+    """Find services and actions that nodes, or the test itself, wait for, and that no node offers."""
+    cores = [core_of(node) for node in graph.nodes if node.is_running]
     offered = {
         e.name.partition(_ACTION)[0]: e.name.startswith(f"{core.full_name}/")
         for core in cores
@@ -92,7 +111,8 @@ def _unserved(cores: list[NodeCore]) -> Iterator[str]:
         waits = [opening.service for opening in ledger.openings.values()]
         for name in sorted({wait.partition(_ACTION)[0] for wait in waits} - offered.keys()):
             hint = did_you_mean(name, known, hidden=offered)
-            yield f"{core.full_name} waits for {name}, which no node of the test offers{hint}"
+            who = "the test" if graph.tester is not None and core is core_of(graph.tester) else core.full_name
+            yield f"{who} waits for {name}, which no node of the test offers{hint}"
 
 
 def _late(graph: Graph) -> Iterator[str]:

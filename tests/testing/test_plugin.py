@@ -201,6 +201,27 @@ def test_a_limit_of_its_own(pytester: pytest.Pytester, monkeypatch: pytest.Monke
     result.stdout.fnmatch_lines(["*was not done after*mark it with @pytest.mark.timeout(*)*"])
 
 
+def test_a_test_that_waits_for_a_service(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Which no node has, is ended with its name."""
+    monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.2)
+    result = run(
+        pytester,
+        """
+        from counter import Counter
+        from graphflow.msgs.std_srvs.srv import Trigger
+
+        async def test_it(graph):
+            await graph.start(Counter())
+            await graph.call(Trigger, "/nobody", Trigger.Request())
+        """,
+    )
+
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        ["*TimeoutError: the test was not done after 0 s*: the test waits for /nobody, which no *"]
+    )
+
+
 @slow
 def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     """It waits for time, and its clock does not move; a busy test continues."""
@@ -222,7 +243,7 @@ def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatc
     )
 
     result.assert_outcomes(failed=1, passed=1)
-    result.stdout.fnmatch_lines(["*TimeoutError*", "*waited in *test_it.py:5*a node that is not there*"])
+    result.stdout.fnmatch_lines(["*TimeoutError*waited in *test_it.py:5: the test waits for /nobody*"])
 
 
 def test_a_failing_test_is_told_what_has_not_happened(pytester: pytest.Pytester) -> None:

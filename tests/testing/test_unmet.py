@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import time
+from pathlib import Path
 
 import pytest
 
-from graphflow import ActionClient, Client, Node, Publisher, subscription, task, timer
+from graphflow import ActionClient, Client, Node, Publisher, service, subscription, task, timer
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
-from graphflow.testing.unmet import misspelt_taps, unmet
+from graphflow.testing.unmet import misspelt_taps, unmet, unserved
 
 
 class Talker(Node):
@@ -162,3 +164,34 @@ async def test_taps_on_misspelt_topics(graph: Graph) -> None:
     graph.tap(String, "/words")
     [text] = misspelt_taps(graph)
     assert "no node publishes /wrods, which the test taps; did you mean /words?" in text
+
+
+class Stamper(Talker):
+    @timer(1.0)
+    async def tick(self) -> None:
+        self.words.publish(String(data=str(time.time())))  # real
+
+
+async def test_a_node_that_reads_the_real_time(graph: Graph) -> None:
+    """Its line is told if nothing else is."""
+    await graph.start(Stamper())
+    graph.tap(String, "/words")
+    await graph.clock.advance(1.0)
+    [told] = await unmet(graph)
+    line = next(n for n, text in enumerate(Path(__file__).read_text().splitlines(), 1) if "  # real" in text)
+    assert told == f"{__file__}:{line} reads the real time, and a test moves the graph's: write self.clock.now()"
+
+
+class Adder(Node):
+    @service(AddTwoInts, "add")
+    async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+
+async def test_a_service_that_the_test_calls(graph: Graph) -> None:
+    """Its name is told, with the nearest."""
+    await graph.start(Adder())
+    call = asyncio.create_task(graph.call(AddTwoInts, "/ad", AddTwoInts.Request()))
+    await graph.settle()
+    assert [*unserved(graph)] == ["the test waits for /ad, which no node of the test offers; did you mean '/add'?"]
+    call.cancel()
