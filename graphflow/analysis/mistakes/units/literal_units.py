@@ -21,6 +21,8 @@ _ANGLES = ("rpy", "roll", "pitch", "yaw", "theta", "heading", "angle")
 _OF_EULER = ("quaternion_from_euler", "from_rpy", "from_euler")
 _LEAST_DEGREES = 10
 """Whole numbers from here on count as degrees: in radians they would be more than a turn and a half."""
+_ROUND_DEGREES = 15
+"""Angular velocities count as degrees per second if they are multiples of this."""
 
 
 @cache
@@ -34,6 +36,7 @@ def literal_units(module: ast.Module) -> tuple[tuple[int, str], ...]:
         if isinstance(node, ast.Call):
             found += _of_period(node, bindings, parents)
             found += _of_angles(node)
+        found += _of_turns(node)
     return tuple(found)
 
 
@@ -74,6 +77,24 @@ def _of_angles(call: ast.Call) -> Iterator[tuple[int, str]]:
         if number is not None and abs(number) >= _LEAST_DEGREES and float(number).is_integer():
             radians = math.radians(number)
             yield value.lineno, f"{name} is in radians: {number:g} degrees are {radians:.4g}, math.radians({number:g})"
+
+
+def _of_turns(node: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find angular velocities that are a round number of degrees: in radians, they would be several turns a second."""
+    match node:
+        case ast.Assign(
+            targets=[ast.Attribute(value=ast.Attribute(attr="angular"), attr="x" | "y" | "z")], value=value
+        ):
+            values = [value]
+        case ast.keyword(arg="angular", value=ast.Call(keywords=keywords)):
+            values = [keyword.value for keyword in keywords]
+        case _:
+            return
+    for value in values:
+        number = _number(value)
+        if number is not None and abs(number) >= _LEAST_DEGREES and number % _ROUND_DEGREES == 0:
+            text = f"angular velocities are in radians per second: {number:g} degrees are {math.radians(number):.4g}"
+            yield value.lineno, f"{text}, math.radians({number:g})"
 
 
 def _compared(comparison: ast.Compare, names: PoseNames, parents: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:

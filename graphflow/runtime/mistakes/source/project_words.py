@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import ast
+import os
+import re
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from functools import cache
+from itertools import islice
 from pathlib import Path
 
 from graphflow.analysis.syntax import last_name, nodes_in, syntax_of
@@ -14,6 +17,10 @@ from graphflow.analysis.user_code import is_installed
 from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
 
+FOLDERS_BOUND, FILES_BOUND, DEPTH = 200, 500, 3
+"""Folders of a project that are searched for files that are not loaded, the files, and the levels of folders."""
+_OF_TOOLS = ("build", "install", "log", "site-packages", "node_modules", "venv")
+"""Folders of a project with files that are not its own."""
 _SHOWING = ("print", "debug", "info", "warning", "warn", "error", "exception", "critical", "fatal", "log")
 """Functions whose texts name nothing: a handler often logs its own name."""
 
@@ -32,9 +39,33 @@ def other_modules(file: str, word: str) -> Iterator[ast.Module]:
                     yield syntax_of(other).module
 
 
+def is_in_other_files(file: str, word: str) -> bool:
+    """Return whether another file of the project, loaded or not, has a word: its tests, or other programs."""
+    from graphflow.workspace.project import project_root
+
+    pattern = re.compile(rf"\b{word}\b")
+    return any(path != file and pattern.search(_text(path)) for path in _files(str(project_root(Path(file)))))
+
+
+@cache
+def _files(root: str) -> tuple[str, ...]:
+    """Return the Python files of a project, as far as they are found soon: a root may be anybody's home."""
+    found: list[str] = []
+    for at, folders, names in islice(os.walk(root), FOLDERS_BOUND):
+        is_deep = len(Path(at).relative_to(root).parts) >= DEPTH
+        folders[:] = [] if is_deep else [n for n in folders if not n.startswith(".") and n not in _OF_TOOLS]
+        found += [os.path.join(at, name) for name in names if name.endswith(".py")]
+        if len(found) > FILES_BOUND:
+            break
+    return tuple(found[:FILES_BOUND])
+
+
 @cache
 def _text(file: str) -> str:
-    return found_text(Path(file))
+    try:
+        return found_text(Path(file), "replace")
+    except OSError:
+        return ""
 
 
 @cache

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import ast
 import logging
-import re
 import sys
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from functools import cache
 
 from graphflow.analysis.attribute_uses import is_own
@@ -19,10 +18,10 @@ from graphflow.analysis.mistakes import native_source
 from graphflow.analysis.syntax import FunctionNode, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users_module
 from graphflow.errors import Place
-from graphflow.names import nearest
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
 from graphflow.runtime.mistakes.source.endless_waits import endless_waits, has_attribute
+from graphflow.runtime.mistakes.source.idle_methods import idle_methods
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.never_equal import never_equal
 from graphflow.runtime.mistakes.source.overridden import overridden
@@ -32,12 +31,10 @@ from graphflow.runtime.mistakes.source.stray_attributes import stray_attributes
 from graphflow.runtime.mistakes.source.uncancelled import uncancelled
 from graphflow.runtime.mistakes.source.unrepeated import unrepeated
 from graphflow.runtime.mistakes.source.without_super import without_super
-from graphflow.runtime.mistakes.source.wrong_fields import flags_of, message_of, resolved, whole_messages, wrong_fields
+from graphflow.runtime.mistakes.source.wrong_fields import flags_of, resolved, whole_messages, wrong_fields
 from graphflow.runtime.mistakes.source.wrong_units import wrong_units
 
 logger = logging.getLogger("graphflow")
-
-_LIKE_A_HANDLER = re.compile(r"on_|handle_|.*(callback|_cb|_handler)$|(tick|timer)$")
 
 
 @cache
@@ -76,7 +73,7 @@ def _slips(cls: type) -> Iterator[str]:
     for parent, definition, file in _sources(cls):
         mentioned = words_in(syntax_of(file).module)
         space = vars(sys.modules[parent.__module__])
-        yield from _idle_methods(parent, definition, file, mentioned, space)
+        yield from idle_methods(parent, definition, file, mentioned, space)
         yield from stray_attributes(cls, definition, file, mentioned)
         yield from _replaced(cls, definition, file, space)
         yield from _changed_in_place(cls, definition, file)
@@ -101,55 +98,6 @@ def _slips(cls: type) -> Iterator[str]:
             if not any(has_attribute(other, name) for other in other_modules(file, name)):
                 found.append((line, text))
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
-
-
-def _idle_methods(
-    cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str], space: dict[str, object]
-) -> Iterator[str]:
-    for method in definition.body:
-        if not isinstance(method, FunctionNode) or method.decorator_list or method.name in mentioned:
-            continue
-        if method.name.startswith("__") or any(method.name in vars(parent) for parent in cls.__mro__[1:]):
-            continue  # the parent calls it
-        arguments = [a for a in (*method.args.posonlyargs, *method.args.args) if a.arg != "self"]
-        kind = _received(arguments[0], space) if len(arguments) == 1 else ""
-        is_like_one = kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1)
-        if is_like_one and not any(method.name in words_in(module) for module in other_modules(file, method.name)):
-            if not arguments and (hook := _hook_meant(cls, method.name)):
-                yield f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}; {hook}"
-                continue
-            decorator = _DECORATORS.get(kind) or (_DECORATORS["message"] if arguments else "@timer(1.0)")
-            yield (
-                f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}, which looks like a "
-                f"handler: declare it, as with {decorator} above it"
-            )
-
-
-def _hook_meant(cls: type, name: str) -> str:
-    """Return the node method (of lifecycle nodes, too) that a name seems to mean; "" if none."""
-    hooks = [attribute for attribute in dir(cls) if attribute.startswith("on_") and attribute != name]
-    near = nearest(name, [hook for hook in hooks if hook in _HOOKS or hook in _OF_LIFECYCLES], cutoff=0.75)
-    meant = near or next((hook for hook, others in _HOOKS.items() if name.removeprefix("on_") in others), None)
-    if name not in _OF_LIFECYCLES:
-        return f"did you mean {meant}?" if meant else ""
-    return f"derive {cls.__name__} from LifecycleNode, whose nodes are configured and activated, or write on_start"
-
-
-_HOOKS = {
-    "on_start": ("init", "begin", "startup", "ready", "open", "run"),
-    "on_shutdown": ("stop", "end", "exit", "close", "destroy", "finish", "cleanup"),
-}
-"""The methods of every node, and other names for them."""
-_OF_LIFECYCLES = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_error")
-_DECORATORS = {"message": '@subscription(Type, "topic")', "request": '@service(Type, "name")'}
-
-
-def _received(argument: ast.arg, space: dict[str, object]) -> str:
-    """Return the annotation of an argument if it is a message or request, else ""."""
-    type_ = message_of(argument.annotation, space)
-    if type_ is None:
-        return ""
-    return "request" if type_.__name__ == "Request" or type_.SCHEMA.name.endswith("_Request") else "message"
 
 
 def _replaced(cls: type, definition: ast.ClassDef, file: str, space: dict[str, object]) -> Iterator[str]:

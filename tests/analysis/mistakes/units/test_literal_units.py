@@ -36,6 +36,9 @@ class Robot:
             "    def moved(self, pose): return pose.theta > 90",
             "pose.theta is in radians, from -3.142 to 3.142: 90 degrees are 1.571",
         ),
+        ("msg.angular.z = 90.0", "in radians per second: 90 degrees are 1.571, math.radians(90)"),
+        ("self.twist.angular.z = -45", "in radians per second: -45 degrees are -0.7854, math.radians(-45)"),
+        ("Twist(angular=Vector3(z=180.0))", "in radians per second: 180 degrees are 3.142"),
         ("quaternion_from_euler(0, 0, 45)", "an angle is in radians: 45 degrees are 0.7854"),
         (POSE.format("pose.theta < -90"), "from -3.142 to 3.142: -90 degrees are -1.571, math.radians(-90)"),
         (POSE.format("90 < pose.theta"), "from -3.142 to 3.142: 90 degrees are 1.571, math.radians(90)"),
@@ -56,6 +59,7 @@ def test_periods_that_may_be_meant(period: str) -> None:
 @pytest.mark.parametrize(
     "code",
     [
+        *("msg.angular.z = 1.5", "msg.angular.z = 0", "msg.angular.z = 20.0", "msg.linear.z = 90.0", "x.z = 90"),
         *("period = 0.5\ntimer(period)", "period = 500\nperiod = 0.5\ntimer(period)"),
         *("def f(x): timer(x)", "self.create_rate(100)"),
     ],

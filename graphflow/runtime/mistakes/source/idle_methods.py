@@ -1,0 +1,94 @@
+"""Methods of a node that nothing calls, and that seem to be meant as handlers, tasks or hooks."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Collection, Iterator
+
+from graphflow.analysis.attribute_uses import is_own
+from graphflow.analysis.syntax import FunctionNode, nodes_in
+from graphflow.errors import Place
+from graphflow.names import nearest
+from graphflow.runtime.declarations import declared
+from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.mistakes.source.project_words import is_in_other_files, other_modules, words_in
+from graphflow.runtime.mistakes.source.wrong_fields import message_of
+
+_LIKE_A_HANDLER = re.compile(r"on_|handle_|.*(callback|_cb|_handler)$|(tick|timer)$")
+_HOOKS = {
+    "on_start": ("init", "begin", "startup", "ready", "open", "run"),
+    "on_shutdown": ("stop", "end", "exit", "close", "destroy", "finish", "cleanup"),
+}
+"""The methods of every node, and other names for them."""
+_OF_LIFECYCLES = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_error")
+_DECORATORS = {
+    "message": '@subscription(Type, "topic")',
+    "request": '@service(Type, "name")',
+    "goal": '@action(Type, "name")',
+}
+
+
+def idle_methods(
+    cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str], space: dict[str, object]
+) -> Iterator[str]:
+    """Return a sentence with its place for each such method.
+
+    Args:
+        file: The file of the class.
+        mentioned: The words that the file reads.
+        space: The global names of the file.
+    """
+    for method in definition.body:
+        if not isinstance(method, FunctionNode) or method.decorator_list or method.name in mentioned:
+            continue
+        if method.name.startswith("__") or any(method.name in vars(parent) for parent in cls.__mro__[1:]):
+            continue  # the parent calls it
+        way = _way(cls, method, file, space)
+        if way and not any(method.name in words_in(module) for module in other_modules(file, method.name)):
+            yield f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}{way}"
+
+
+def _way(cls: type, method: FunctionNode, file: str, space: dict[str, object]) -> str:
+    """Return what would have a method called, as the end of a sentence; "" if it does not seem to be meant."""
+    arguments = [a for a in (*method.args.posonlyargs, *method.args.args) if a.arg != "self"]
+    kind = _received(arguments[0], space) if len(arguments) == 1 else ""
+    if kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1):
+        if not arguments and (hook := _hook_meant(cls, method.name)):
+            return f"; {hook}"
+        decorator = _DECORATORS.get(kind) or (_DECORATORS["message"] if arguments else "@timer(1.0)")
+        return f", which looks like a handler: declare it, as with {decorator} above it"
+    used = "" if arguments or method.name.startswith("_") else _used_by(method, cls)
+    if not used or is_in_other_files(file, method.name):  # a test, or another program, may call it
+        return ""
+    return f", which uses self.{used}: write @timer(1.0) or @task above it"
+
+
+def _used_by(method: FunctionNode, cls: type) -> str:
+    """Return a publisher, a client or the like that a method uses; "" if it uses none."""
+    ends = {name for name, declaration in declared.declarations(cls).items() if not isinstance(declaration, Param)}
+    for node in nodes_in(method):
+        match node:
+            case ast.Call(func=ast.Attribute(value=ast.Attribute(attr=name) as end)) if name in ends and is_own(end):
+                return name
+    return ""
+
+
+def _hook_meant(cls: type, name: str) -> str:
+    """Return the node method (of lifecycle nodes, too) that a name seems to mean; "" if none."""
+    hooks = [attribute for attribute in dir(cls) if attribute.startswith("on_") and attribute != name]
+    near = nearest(name, [hook for hook in hooks if hook in _HOOKS or hook in _OF_LIFECYCLES], cutoff=0.75)
+    meant = near or next((hook for hook, others in _HOOKS.items() if name.removeprefix("on_") in others), None)
+    if name not in _OF_LIFECYCLES:
+        return f"did you mean {meant}?" if meant else ""
+    return f"derive {cls.__name__} from LifecycleNode, whose nodes are configured and activated, or write on_start"
+
+
+def _received(argument: ast.arg, space: dict[str, object]) -> str:
+    """Return what an argument receives by its annotation: a `message`, `request` or `goal`; "" for anything else."""
+    if argument.annotation is not None and ast.unparse(argument.annotation).endswith(".Handle"):
+        return "goal"
+    type_ = message_of(argument.annotation, space)
+    if type_ is None:
+        return ""
+    return "request" if type_.__name__ == "Request" or type_.SCHEMA.name.endswith("_Request") else "message"
