@@ -15,9 +15,11 @@ from types import CodeType, FrameType, FunctionType, MethodType, ModuleType
 from graphflow.analysis.syntax import last_name, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users, short_place
 from graphflow.msgs import registry
+from graphflow.msgs.homes import homes, imports
 from graphflow.msgs.registry import KINDS
 from graphflow.names import nearest
 from graphflow.rclpy.hints.frames import PATH, line_of, named, own
+from graphflow.runtime.mistakes.errors.name_errors import MODULES
 
 
 def missing_name(error: BaseException, _frames: list[FrameType]) -> str:
@@ -35,8 +37,7 @@ def _where(name: str, module: str) -> str:
     if kind in KINDS:
         if " must be " in (wrong := registry.misplaced(package, name)):
             return wrong.removeprefix("; ")
-        known = [f"{p}.{k}" for p in registry.packages() for k in KINDS if name in registry.names_in(p, k)]
-        known.sort(key=lambda where: (not where.startswith(f"{package}."), where))
+        known = sorted(homes(name), key=lambda where: not where.startswith(f"{package}."))
         if known:
             return f"{name} is in {' and '.join(known[:3])}: from {known[0]} import {name}"
         near = nearest(name, registry.names_in(package, kind))
@@ -137,7 +138,12 @@ def _unbound(name: str, frame: FrameType) -> str:
     node = frame.f_locals.get("self")
     if node is not None and (name in vars(node) or hasattr(type(node), name)):
         return f"write self.{name}"
-    return ""
+    if name == "rclpy":
+        return "write import rclpy"
+    if way := _in_rclpy(name, "rclpy"):
+        return way
+    line = imports(name) or MODULES.get(name, "")
+    return f"write {line}" if line else ""
 
 
 def unset(error: BaseException, frames: list[FrameType]) -> str:

@@ -78,8 +78,8 @@ class TopicMonitor:
 
     def _arrived(self, message: Message, info: MessageInfo) -> None:
         now = time.monotonic()
-        self.count += 1
         self.message, self.info = message, info
+        self.count += 1  # last: the screen's thread takes the message when this has changed
         self.arrivals.append(now)
         if self.on_message is not None:
             self.on_message(message, now)

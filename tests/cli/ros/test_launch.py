@@ -28,7 +28,7 @@ def test_python(machine: Machine, tmp_path: Path) -> None:
     told = machine.look("launch", "convert", str(ROBOT), "-o", str(target), code=1)
     assert f"{target}: written; try it with: graphflow check {target}" in told
     assert "rviz2 rviz2: no node of that name is here; ros2 runs it, which must be installed" in told
-    assert "SetParametersFromFile has no equivalent in a graph file" in told
+    assert "SetROSLogDir has no equivalent in a graph file" in told
     text = target.read_text()
     assert text.startswith("# From robot.launch.py, by graphflow launch convert.\n")
     text = text.replace("quiet", "speed").replace("unless: $(var speed)", "unless: false")

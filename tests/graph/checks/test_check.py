@@ -98,7 +98,11 @@ def test_what_fits_is_no_problem(line: str) -> None:
         ("params: {gain: fast}", "4:20: parameter 'gain' is of type double, 'fast' is not"),
         ("params: {gain: 0}", "4:20: parameter 'gain' = 0.0 is out of range: more than 0 1/s"),
         ("params: {count: 256}", "4:21: parameter 'count' = 256 is out of range: 0 to 255"),
-        ("params: {count: 1.5}", "4:21: parameter 'count' is of type integer, 1.5 is not"),
+        (
+            "params: {count: 1.5}",
+            "4:21: parameter 'count' is of type integer, 1.5 is not; its default is 1, an integer: for a double, write "
+            "1.0 in code.py:1",
+        ),
         ("params: {count: true}", "4:21: parameter 'count' is of type integer, True is not"),
         ("params: {name: 3}", "4:20: parameter 'name' is of type string, 3 is not"),
         ("params: {turbo: on}", "4:21: parameter 'turbo' is of type boolean, 'on' is not"),

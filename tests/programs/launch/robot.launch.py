@@ -27,7 +27,7 @@ from launch.substitutions import (
     PythonExpression,
     TextSubstitution,
 )
-from launch_ros.actions import ComposableNodeContainer, Node, PushRosNamespace, SetParametersFromFile
+from launch_ros.actions import ComposableNodeContainer, Node, PushRosNamespace, SetROSLogDir
 from launch_ros.descriptions import ComposableNode
 from launch_ros.substitutions import FindPackageShare
 
@@ -109,7 +109,7 @@ def generate_launch_description():
                     )
                 ],
             ),
-            SetParametersFromFile(filename="a.yaml"),
+            SetROSLogDir(new_log_dir="logs"),
         ]
     )
     description.add_action(LogInfo(msg="last"))

@@ -63,6 +63,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: NOW - n.header.stamp, "n.header.stamp is a message: write rclpy.time.Time.from_msg"),
     (lambda n: n.header.stamp < n.get_clock().now(), "write rclpy.time.Time.from_msg(n.header.stamp)"),
     (lambda n: n.get_clock().now() - [n.header][0].stamp, "one of them is a message: rclpy.time.Time.from_msg(stamp)"),
+    (lambda n: Imu(), "write from sensor_msgs.msg import Imu"),  # type: ignore[name-defined]  # noqa: F821
     # by text
     (lambda n: setattr(n, "timers", 1), "every node has 'timers' already: choose another name for the attribute"),
     (lambda n: setattr(n, "handle", 1), "every node has 'handle' already"),
@@ -104,7 +105,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: n.set_parameters({"n": 6}), "write set_parameters([Parameter('name', value=6)])"),
     (lambda n: n.create_publisher(String, "chat", 1).publish(String), "that is a class, not a message: write String()"),
     (lambda n: n.create_publisher(String, "chat", 1).publish("hello"), "write String(data='hello')"),
-    (lambda n: n.create_publisher(Twist, "drive", 1).publish("hello"), ""),
+    (lambda n: Imu(), "write from sensor_msgs.msg import Imu"),  # type: ignore[name-defined]  # noqa: F821
     (lambda n: n.create_timer(n.declare_parameter("rate", 1.0), print), "a parameter's value is in .value"),
     (lambda n: ActionClient(n, Fibonacci, "fib").send_goal_async(Fibonacci.Goal), "write Fibonacci.Goal()"),
     (lambda n: (n.destroy_node(), n.get_name()), "it was already destroyed, by itself or with its node"),

@@ -41,7 +41,8 @@ def talk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
             spec.loader.exec_module(module)
         main = ModuleType("__main__")
         main.__file__ = str(file)
-        others = {name: module for name, module in sys.modules.items() if not name.startswith(("tests", "conftest"))}
+        known = {"graphflow", *sys.stdlib_module_names}
+        others = {name: module for name, module in sys.modules.items() if name.partition(".")[0] in known}
         monkeypatch.setattr(sys, "modules", {**others, "talk": module, "__main__": main})
         return module.Talk  # type: ignore[no-any-return]
 

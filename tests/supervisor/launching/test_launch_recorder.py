@@ -84,7 +84,7 @@ def test_what_has_no_words() -> None:
     assert left_out["message"].startswith("OnProcessIO is left out")
     problems = {problem["line"]: problem["message"] for problem in told["problems"]}
     assert problems[line_of("OpaqueFunction(function")].startswith("OpaqueFunction: it was called once, with $(var")
-    assert problems[line_of("SetParametersFromFile(filename")].startswith("SetParametersFromFile has no equivalent")
+    assert problems[line_of("SetROSLogDir(new_log_dir")].startswith("SetROSLogDir has no equivalent")
     assert len(problems) == 2
 
 

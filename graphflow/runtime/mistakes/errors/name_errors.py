@@ -6,6 +6,8 @@ import ast
 import inspect
 import linecache
 import re
+import sys
+from importlib import import_module
 from types import FrameType, ModuleType
 from typing import Any
 
@@ -32,11 +34,33 @@ def owner_of(error: NameError) -> str:
             parent = _value(base, frame)
             if isinstance(parent, type) and inspect.getattr_static(parent, name, None) is not None:
                 return f"a class body does not see its parent's names: write {ast.unparse(base)}.{name}"
-        return ""
     node = frame.f_locals.get("self")
     if node is not None and not name.startswith("__") and inspect.getattr_static(node, name, None) is not None:
         return f"a method does not see the names of its class: write self.{name}"
-    return ""
+    return _missing_import(name)
+
+
+def home_of(name: str) -> str:
+    """Return the module of graphflow's, beside `graphflow` itself, that has a public name; "" if none has."""
+    return next((home for home in ("graphflow.tf", "graphflow.testing") if name in import_module(home).__all__), "")
+
+
+def _missing_import(name: str) -> str:
+    """Return the line that imports a name, if it is one of graphflow's, a type's, or a module's; "" if it is none."""
+    import graphflow
+    from graphflow.msgs.homes import imports
+
+    if name in graphflow.__all__:
+        return f"write from graphflow import {name}"
+    home = home_of(name)
+    lines = [f"from {home} import {name}" if home else "", imports(name, "graphflow.msgs.")]
+    if any(lines):
+        return f"write {' or '.join(filter(None, lines))}"
+    return f"write {MODULES[name]}" if name in MODULES else ""
+
+
+MODULES = {name: f"import {name}" for name in sorted(sys.stdlib_module_names)} | {"np": "import numpy as np"}
+"""The lines that import modules under their usual names."""
 
 
 def _unbound_local(error: UnboundLocalError, frame: FrameType) -> str:

@@ -93,7 +93,7 @@ class Joints(View):
         self._description.look()
         if self._description.type_name not in ("", TEXT):
             self._trouble = f"{self._description.topic} is no description: it is of type {self._description.type_name}"
-        elif self._description.count != self._seen:
+        elif self._description.message is not None and self._description.count != self._seen:
             self._seen = self._description.count
             self._take(self._description.message)
         if self._robot is None:

@@ -53,6 +53,11 @@ TICK = "    @timer(1.0, group=motion)\n    async def tick(self) -> None: ...\n"
         ("class N(Base):\n    def work(self):\n        return 2 * gain\nN().work()", "write self.gain"),
         ("class N(Base):\n    def work(self):\n        return 2 * gian\nN().work()", ""),
         ("motion", ""),
+        ("Vector3()", "write from graphflow.msgs.geometry_msgs.msg import Vector3"),
+        ("Transforms()", "write from graphflow.tf import Transforms"),
+        ("@subscription(1, 'x')\ndef f(m): ...", "write from graphflow import subscription"),
+        ("math.sin(1.0)", "write import math"),
+        ("np.zeros(2)", "write import numpy as np"),
         ("class N(Base):\n    count = 0\n    def work(self):\n        count += 1\nN().work()", "write self.count"),
         (
             "class N(Base):\n    count = 0\n    def work(self):\n        count = count + 1\nN().work()",
