@@ -107,7 +107,6 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: n.create_publisher(String, "chat", 1).publish("hello"), "write String(data='hello')"),
     (lambda n: Imu(), "write from sensor_msgs.msg import Imu"),  # type: ignore[name-defined]  # noqa: F821
     (lambda n: n.create_timer(n.declare_parameter("rate", 1.0), print), "a parameter's value is in .value"),
-    (lambda n: ActionClient(n, Fibonacci, "fib").send_goal_async(Fibonacci.Goal), "write Fibonacci.Goal()"),
     (lambda n: (n.destroy_node(), n.get_name()), "it was already destroyed, by itself or with its node"),
     (lambda n: rclpy.init(), "call rclpy.init() once, before the first node is created"),
     # fields

@@ -41,17 +41,15 @@ def owner_of(error: NameError) -> str:
 
 
 def home_of(name: str) -> str:
-    """Return the module of graphflow's, beside `graphflow` itself, that has a public name; "" if none has."""
-    return next((home for home in ("graphflow.tf", "graphflow.testing") if name in import_module(home).__all__), "")
+    """Return the module of graphflow's that has a public name; "" if none has."""
+    homes = ("graphflow", "graphflow.tf", "graphflow.testing")
+    return next((home for home in homes if name in import_module(home).__all__), "")
 
 
 def _missing_import(name: str) -> str:
     """Return the line that imports a name, if it is one of graphflow's, a type's, or a module's; "" if it is none."""
-    import graphflow
     from graphflow.msgs.homes import imports
 
-    if name in graphflow.__all__:
-        return f"write from graphflow import {name}"
     home = home_of(name)
     lines = [f"from {home} import {name}" if home else "", imports(name, "graphflow.msgs.")]
     if any(lines):
