@@ -8,6 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from graphflow.errors import DeclarationError
 from graphflow.msgs.geometry_msgs.msg import Transform as TransformMessage
 from graphflow.msgs.geometry_msgs.msg import TransformStamped
 from graphflow.msgs.std_msgs.msg import Header
@@ -52,9 +53,13 @@ class Transform:
             rpy: Roll, pitch and yaw in radians: rotations about the fixed axes x, y and z in turn.
             rotation: A quaternion (x, y, z, w) in place of `rpy`.
             stamp: Its time; by default the time of sending.
+
+        Raises:
+            DeclarationError: The translation or `rpy` is not three numbers.
         """
-        x, y, z = map(float, translation)
-        return cls(parent, child, Pose((x, y, z), from_rpy(*rpy) if rotation is None else rotation), stamp)
+        x, y, z = _three(translation, "the translation", "(x, y, z)")
+        turned = from_rpy(*_three(rpy, "rpy", "(0.0, 0.0, yaw)")) if rotation is None else rotation
+        return cls(parent, child, Pose((x, y, z), turned), stamp)
 
     @classmethod
     def from_msg(cls, message: TransformStamped) -> Transform:
@@ -157,3 +162,16 @@ def fill(message: TransformStamped, pose: Pose, parent: str, child: str, stamp_n
     header.frame_id, message.child_frame_id = parent, child
     t, r = transform.translation, transform.rotation
     (t.x, t.y, t.z), (r.x, r.y, r.z, r.w) = pose
+
+
+def _three(numbers: object, what: str, form: str) -> Vector:
+    """Check three numbers of a caller's.
+
+    Raises:
+        DeclarationError: They are not three numbers.
+    """
+    try:
+        x, y, z = map(float, numbers)  # type: ignore[call-overload]
+    except (TypeError, ValueError):
+        raise DeclarationError(f"{what} is three numbers, {form}, and not {numbers!r}") from None
+    return x, y, z

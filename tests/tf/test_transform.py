@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
+from typing import Any
 
 import numpy as np
 import pytest
 
-from graphflow import Time
+from graphflow import DeclarationError, Time
 from graphflow.tf import Transform
 
 LEFT = Transform.of("base", "laser", (1.0, 0.0, 0.0), rpy=(0.0, 0.0, math.pi / 2))
@@ -49,3 +51,18 @@ def test_arrays() -> None:
     assert np.allclose(points, [[1.0, 2.0, 0.0], [1.0, 0.0, 1.0]])
     assert np.allclose(LEFT.vectors([2.0, 0.0, 0.0]), [0.0, 2.0, 0.0])
     assert LEFT.points(np.zeros((4, 5, 3))).shape == (4, 5, 3)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "told"),
+    [
+        ({"translation": (1.0, 2.0)}, r"the translation is three numbers, (x, y, z), and not (1.0, 2.0)"),
+        ({"translation": 1.0}, "the translation is three numbers"),
+        ({"rpy": 1.5}, "rpy is three numbers, (0.0, 0.0, yaw), and not 1.5"),
+        ({"rpy": ("a", 0, 0)}, "rpy is three numbers"),
+    ],
+)
+def test_other_than_three_numbers(numbers: Any, told: str) -> None:
+    """Are refused."""
+    with pytest.raises(DeclarationError, match=re.escape(told)):
+        Transform.of("a", "b", **numbers)

@@ -8,6 +8,7 @@ from contextlib import AsyncExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
 
+from graphflow.analysis.user_code import short_place
 from graphflow.errors import TransitionFailed, TransitionRefused
 from graphflow.executor.runner import Runner
 from graphflow.machines.lifecycle import (
@@ -22,6 +23,7 @@ from graphflow.machines.lifecycle import (
 )
 from graphflow.msgs import registry
 from graphflow.qos import SERVICES, Qos
+from graphflow.runtime.callables import code_of
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.mistakes.slow_hooks import when_slow
 from graphflow.runtime.node_core import NodeCore
@@ -241,9 +243,10 @@ class ManagedCore(NodeCore):
         try:
             returned = await getattr(self.instance, hook)()
             if returned is not None:
-                raise TypeError(
-                    f"{hook} returned {returned!r}; a hook succeeds by returning None, and refuses by `raise`"
-                )
+                code = code_of(getattr(self.instance, hook))
+                where = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
+                text = f"{hook} returned {returned!r}; a hook succeeds by returning None"
+                raise TypeError(f'{text}, and refuses by raise TransitionRefused("why"){where}')
         except TransitionRefused as error:
             self.log.warning("%s refused: %s", hook, error)
             return Outcome.FAILURE, f"{hook} refused: {error}"

@@ -233,6 +233,11 @@ EQUIVALENTS = (
         "`Buffer()`, `TransformListener(buffer, self)`", "`tf = Transforms()` in the class: [transforms](transforms.md)"
     ),
     Equivalent(
+        "`self.tf_buffer`",
+        "`self.tf`, with `tf = Transforms()` in the class, from `graphflow.tf`",
+        "tf tf_buffer buffer",
+    ),
+    Equivalent(
         "`buffer.lookup_transform(target, source, time, timeout)`",
         "`await self.tf.lookup(target, source, at=time, timeout=1.0)`, or `self.tf.get(...)`",
         "lookup_transform lookup_transform_async can_transform",
@@ -331,6 +336,9 @@ def with_argument_hints(function: Callable[P, T]) -> Callable[P, T]:
             if hint := translation(word, "keywords"):
                 raise DeclarationError(f"{here()}: {called} has no {word}=; {hint}")
         if len(args) > len(first):
+            if called == "Param" and isinstance(args[1], type):
+                way = f"the default decides it: write Param({args[2]!r}, ...)"
+                raise DeclarationError(f"{here()}: {called} takes no type; {way}")
             if called == "Param" and isinstance(args[1], str):
                 way = f"leave out {args[1]!r}, the parameter has the name of its attribute; write Param({args[2]!r})"
                 raise DeclarationError(f"{here()}: {called} takes no name first: {way}")

@@ -16,7 +16,6 @@ from std_msgs.msg import Header, String
 
 import rclpy
 from graphflow.rclpy.hints import lookup, tracebacks
-from rclpy.action import ActionClient
 from rclpy.action.client import ClientGoalHandle
 from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock

@@ -37,6 +37,8 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: Client(anything(String), "x"), "Client needs a service class, not <class"),
     (lambda: Client(anything(AddTwoInts.Request), "x"), "give the service's class, as in AddTwoInts, not its Request"),
     (lambda: Client(AddTwoInts, "1x"), "Client: '1x' is not a topic or service name"),
+    (lambda: Param(anything(float)), "cannot be a parameter: its default decides the type: write 0.0"),
+    (lambda: anything(Param)(float, 1.5), "Param takes no type; the default decides it: write Param(1.5, ...)"),
     (lambda: Param(anything(None)), "None cannot be a parameter: use a bool, int, float, str, bytes, or a list of one"),
     (lambda: Param(anything([])), "an empty list has no type"),
     (lambda: Param(anything([1, "a"])), "[1, 'a'] cannot be a parameter"),

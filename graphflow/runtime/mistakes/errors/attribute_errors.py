@@ -48,12 +48,30 @@ def better_text(error: AttributeError) -> str:
         return ""
     if isinstance(thing, Message):
         return no_field(type(thing), name)
+    if way := _of_transform(thing, name, error):
+        return f"{error}; {way}"
     if not isinstance(thing, AttributeHints):
         return ""
     if text := text_instead(thing, name):
         return text
     hint = translation(name) or hint_of(thing, name) or _setter(thing, name) or _near(thing, name)
     return f"{error}; {hint}" if hint else ""
+
+
+def _of_transform(thing: object, name: str, error: AttributeError) -> str:
+    """Return how the numbers of a transform are read, which are no fields as a message's are; "" for other objects."""
+    kind = f"{type(thing).__module__}.{type(thing).__name__}"
+    if kind == "graphflow.tf.transform.Transform" and name in _AXES:
+        return "its numbers are a tuple: x, y, z = found.translation"
+    parts = list(parts_of(error.__traceback__))
+    if not isinstance(thing, tuple) or name not in (*_AXES, "w") or not parts:
+        return ""
+    line = linecache.getline(parts[-1].tb_frame.f_code.co_filename, parts[-1].tb_lineno)
+    found = re.search(rf"([\w.]*\b(translation|rotation|rpy))\.{name}\b", line)
+    return "" if found is None else f"it is a tuple: write {found[1]}[{'xyzw'.index(name)}]"
+
+
+_AXES = ("x", "y", "z")
 
 
 def _near(thing: object, name: str) -> str:

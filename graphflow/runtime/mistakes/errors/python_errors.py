@@ -35,7 +35,15 @@ _SECONDS = "(int|float)"
 _SPANS = "(Time|Duration)"
 REMARKS = (
     # Python 3.14: "'NoneType' object can't be awaited"; before: "object NoneType can't be used in 'await' expression".
+    Remark(
+        r"NoneType\b.* '?await", r"await\s+(time\.)?sleep\((?P<pause>[^()]*)\)", "write await self.clock.sleep({pause})"
+    ),
     Remark(r"NoneType\b.* '?await", _AWAITED + r"\(", "{name} returns at once: remove await"),
+    Remark(
+        "^no running event loop$",
+        r"asyncio\.(create_task|ensure_future)\(\s*self\.(?P<name>\w+)\(",
+        "no loop runs while a node is made: write @task above {name}, or self.spawn(self.{name}) in on_start",
+    ),
     Remark(
         r"^'NoneType' object has no attribute '(?P<attribute>\w+)'",
         r"self\.(?P<name>\w+)\.ATTRIBUTE\b",
@@ -63,6 +71,12 @@ REMARKS = (
     ),
     Remark("'ClientGoalHandle' object does not support the asynchronous context", "", _SEND),
     Remark("object does not support the context manager", r"\bwith\b", "write async with"),
+    Remark(r"^Transform\.of\(\) takes from", "", "the translation is one argument: (x, y, z)"),
+    Remark(
+        r"^Transform\.__init__\(\) got an unexpected keyword argument '(rpy|translation|rotation)'",
+        "",
+        "write Transform.of(parent, child, (x, y, z), rpy=(0.0, 0.0, yaw))",
+    ),
     Remark(_COROUTINE, "", "that is a coroutine: write await before the call"),
     Remark(
         "a coroutine was expected, got <(bound method|function)",

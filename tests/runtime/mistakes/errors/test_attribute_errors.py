@@ -12,6 +12,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.sensor_msgs.msg import Image
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.tf import Transform
 
 NODE: Any = Node("n")
 
@@ -186,3 +187,22 @@ def test_attributes_that_a_method_sets_later() -> None:
         begin = f"'Follower' object has no attribute '{name}'" + text.format(Follower.moved.__code__.co_firstlineno)
         assert str(caught.value).startswith(begin)
         assert text or str(caught.value) == begin
+
+
+@pytest.mark.parametrize(
+    ("use", "way"),
+    [
+        (lambda found: found.x, "its numbers are a tuple: x, y, z = found.translation"),
+        (lambda found: found.translation.y, "it is a tuple: write found.translation[1]"),
+        (lambda found: found.rotation.w, "it is a tuple: write found.rotation[3]"),
+        (lambda found: (found,).x, ""),  # type: ignore[attr-defined]
+        (lambda found: NODE.tf.send(found), "self.tf, with tf = Transforms() in the class, from graphflow.tf"),
+    ],
+)
+def test_numbers_of_a_transform(use: Any, way: str) -> None:
+    """They are no fields, as a message's are."""
+    with pytest.raises(AttributeError) as caught:
+        use(Transform.of("a", "b"))
+    explain(caught.value)
+    assert str(caught.value).endswith(way)
+    assert ("; " in str(caught.value)) is bool(way)

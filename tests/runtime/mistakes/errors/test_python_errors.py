@@ -55,9 +55,38 @@ def remark_at(monkeypatch: pytest.MonkeyPatch, text: str, line: str) -> str:
 
 
 @pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("Transform.of() takes from 3 to 4 positional arguments but 6 were given", "is one argument: (x, y, z)"),
+        (
+            "Transform.__init__() got an unexpected keyword argument 'rpy'",
+            "write Transform.of(parent, child, (x, y, z),",
+        ),
+    ],
+)
+def test_transforms_from_numbers(monkeypatch: pytest.MonkeyPatch, text: str, told: str) -> None:
+    """They are made by `Transform.of`."""
+    assert told in remark_at(monkeypatch, text, "")
+
+
+def test_a_task_before_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is the node's, and starts with it."""
+    monkeypatch.setattr(linecache, "getline", lambda *_: "asyncio.create_task(self.report())")
+
+    def use() -> None:
+        raise RuntimeError("no running event loop")
+
+    assert remark_on(caught(use)) == (
+        "no loop runs while a node is made: write @task above report, or self.spawn(self.report) in on_start"
+    )
+
+
+@pytest.mark.parametrize(
     ("text", "line", "remark"),
     [
         (EXPRESSION.format("NoneType"), "await self.words.publish(String())", PUBLISH),
+        (EXPRESSION.format("NoneType"), "await time.sleep(0.1)", "write await self.clock.sleep(0.1)"),
+        ("'NoneType' object can't be awaited", "await sleep(1 / 2)", "write await self.clock.sleep(1 / 2)"),
         ("'NoneType' object can't be awaited", "await self.words.publish(String())", PUBLISH),
         (EXPRESSION.format("method"), "await self.tick", TICK),
         ("'method' object can't be awaited", "await self.tick", TICK),
