@@ -16,6 +16,7 @@ CUTOFF = 0.75
 COMPARED = 500
 """Names that one is compared with, at most: other processes announce any number, and each takes up to 0.1 ms."""
 
+_DIGITS = "0123456789"
 _OF_SENSORS = ("sensor_msgs/", "nav_msgs/")
 
 ByType = Mapping[tuple[Kind, str], list[Entity]]
@@ -120,7 +121,9 @@ def is_misspelt(name: str, other: str) -> bool:
     if len(ours) != len(theirs) or len(apart) != 1:
         return False
     [(a, b)] = apart
-    if a.strip("0123456789") == b.strip("0123456789") or _is_another(a.split("_"), b.split("_")):
+    if a.strip(_DIGITS) == b.strip(_DIGITS):
+        return a[-1:].isdigit() is not b[-1:].isdigit()  # `turtle` for `turtle1`; `turtle2` is another one
+    if _is_another(a.split("_"), b.split("_")):
         return False
     return nearest(a, [b], cutoff=CUTOFF) is not None
 

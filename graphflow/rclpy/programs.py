@@ -94,9 +94,9 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
     if found is None:
         if words[0].startswith("-") or not package.executables:
             return None
-        near = (
-            launching(words[0], [package]) or _unnamed(package, words[0]) or did_you_mean(words[0], package.executables)
-        )
+        is_explained = words[0].removesuffix(".py") in package.why_no_executable
+        near = "" if is_explained else launching(words[0], [package]) or _unnamed(package, words[0])
+        near = near or ("" if is_explained else did_you_mean(words[0], package.executables))
         raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}{package.why_no_executable}")
     file, entry = found
     is_ours = entry is not None and is_graphflows(file)

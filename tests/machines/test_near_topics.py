@@ -24,6 +24,7 @@ def endpoint(kind: Kind, node: str, name: str, type_: str = TWIST) -> Entity:
         ("/turtle/pose", "/turtl/pose", True),
         ("/cmd_vel", "/turtle1/cmd_vel", True),
         ("/turtle1/cmd_vel", "/cmd_vel", True),
+        ("/turtle/cmd_vel", "/turtle1/cmd_vel", True),
         ("/vel", "/cmd_vel", False),
         ("/turtle2/cmd_vel", "/turtle1/cmd_vel", False),
         ("/cmd_vel_nav", "/cmd_vel", False),

@@ -71,6 +71,8 @@ def find_class(what: str, words: Sequence[str]) -> tuple[type[Node], list[str]]:
         raise UsageFault(f"{error}{_source_line(error.__cause__)}") from None
     if root != demos_root() and Path(getfile(cls)).is_relative_to(demos_root()):
         output.talk(f"{what}: using the one that comes with graphflow, {getfile(cls)}")
+        for package in owners(what, find_workspace(Path.cwd())) if not rest else ():
+            output.talk(f"that of your package {package} is run by: graphflow run {package} {what}")
     return cls, rest
 
 
@@ -200,7 +202,8 @@ def _no_such_package(what: str, executable: str, workspace: Workspace) -> str:
     near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
     meant = f"; did you mean {near!r}?" if near is not None else ""
     known_here = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""
-    return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or known_here}"
+    elsewhere = "; go to the folder that has yours in src/, or to one within it"
+    return f"there is no package {what!r} in {workspace.root} or with graphflow{meant or known_here or elsewhere}"
 
 
 def _module_of(file: Path, root: Path) -> str:

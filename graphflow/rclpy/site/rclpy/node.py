@@ -29,6 +29,7 @@ from rclpy.impl.destroy_methods import DestroyMethods
 from rclpy.impl.graph_methods import GraphMethods
 from rclpy.impl.internals import Holdings, Internals, Known, none
 from rclpy.impl.mistakes.arguments import explained
+from rclpy.impl.mistakes.hidden_properties import refuse_hidden_properties
 from rclpy.impl.name_methods import NameMethods
 from rclpy.impl.node_arguments import read_arguments
 from rclpy.impl.overrides import as_parameters
@@ -83,6 +84,7 @@ class Node(ParameterMethods, DestroyMethods, GraphMethods, NameMethods, Holdings
         life = context.life
         if life is None or not context.ok():
             raise NotInitializedException("cannot create node")
+        refuse_hidden_properties(type(self), Node)
         given = read_arguments(life, node_name, namespace, cli_args or (), use_global=use_global_arguments)
         bell = NodeBell()
         has_rosout = enable_rosout and given.has_rosout

@@ -49,7 +49,7 @@ _PARAMETERS: dict[str, tuple[str, Callable[[object], bool]]] = {
     **dict.fromkeys(("callback", "execute_callback"), ("a function or method", _is_callback)),
 }
 """The types of values that calls take, by parameter."""
-_WRITTEN = {"parameter_list": "[Parameter('name', value=...)]"}
+_WRITTEN = {"parameter_list": "[Parameter('name', value=...)]", "qos_profile": "10"}
 """Arguments as they are written in a call, where that differs from the parameter's name."""
 
 
@@ -91,7 +91,8 @@ def _fault(name: str, given: Mapping[str, object], needed: list[str]) -> str:
         if all(map(_fits, words, given.values())):
             values = dict(zip(words, map(_shown, given.values()), strict=True))
             missing = " and ".join(word for word in needed if word not in words)
-            return f"{name} needs {missing}, too: {name}({', '.join(values.get(word, word) for word in needed)})"
+            written = ", ".join(values.get(word, _WRITTEN.get(word, word)) for word in needed)
+            return f"{name} needs {missing}, too: {name}({written})"
     wrong = [word for word, value in given.items() if not _fits(word, value)]
     if not wrong:
         return ""

@@ -80,9 +80,12 @@ class Unserved:
         self._known.add(known)
         wait = "wait_for_service()" if isinstance(client, Client) else "wait_for_server()"
         if client in self._served or any(endpoint.was_served for endpoint in clients_of(client)):
-            why = f"the server of {role_of(client).handler} came after it, or went away before it answered"
-        else:
-            why = nobody(client, self._context.cache)
+            text = (
+                "a call of %s will never be answered: the server of %s went away before it answered, or came after it"
+            )
+            logger.warning(f"{text}; its terminal may say why", full_name(node), role_of(client).handler)
+            return
+        why = nobody(client, self._context.cache)
         text = "a call of %s will never be answered, since it has no server (%s waits for one): %s"
         logger.warning(text, full_name(node), wait, why)
 
