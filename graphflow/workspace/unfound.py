@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from graphflow.reading import found_text
-from graphflow.workspace.packages import Folder, Package, Workspace, folders, workspace_around
+from graphflow.workspace.packages import Folder, Package, Workspace, cmake_text, folders, workspace_around
 
 _BUILT = ("setup.py", "CMakeLists.txt")
 _LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
@@ -56,6 +56,21 @@ def starts_of(package: Package) -> str:
     starts = [f"graphflow launch {package.name} {file}" for file in files[:1]]
     starts += [f"graphflow run {package.name} {executable}" for executable in package.executables[:1]]
     return "; to start it: " + ", or ".join(starts) if starts else ""
+
+
+def uninstalled_launch_files(package: Package) -> str:
+    """Return what a package's build lacks for ROS 2 to find its launch files; "" if it installs them."""
+    setup, cmake = package.folder / "setup.py", package.folder / "CMakeLists.txt"
+    if not (package.folder / "launch").is_dir():
+        return ""
+    text = "does not install launch/, so that ROS 2 would not find it; add"
+    if setup.is_file():
+        way = "to data_files: (os.path.join('share', package_name, 'launch'), glob('launch/*'))"
+        return "" if "launch" in package.setup.text else f"{_shown(setup)} {text} {way}"
+    is_installed = not cmake.is_file() or "launch" in cmake_text(package)
+    return (
+        "" if is_installed else f"{_shown(cmake)} {text}: install(DIRECTORY launch DESTINATION share/${{PROJECT_NAME}})"
+    )
 
 
 def inner_workspaces(workspace: Workspace) -> list[Path]:

@@ -14,6 +14,7 @@ from graphflow.workspace.unfound import (
     outer_workspace,
     owners,
     starts_of,
+    uninstalled_launch_files,
     why_no_package,
 )
 
@@ -71,6 +72,31 @@ def test_what_starts_a_package(workspace: Workspace) -> None:
     (lamp.folder / "launch" / "lamp.launch.py").touch()
     (lamp.folder / "launch" / "README").touch()
     assert starts_of(lamp) == "; to start it: graphflow launch lamp lamp.launch.py, or graphflow run lamp shine"
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "told"),
+    [
+        ("setup.py", "setup()", "src/lamp/setup.py does not install launch/, so that ROS 2 would not find it; add to"),
+        ("setup.py", "glob('launch/*')", ""),
+        ("CMakeLists.txt", "install(DIRECTORY msg)", "src/lamp/CMakeLists.txt does not install launch/, so that ROS 2"),
+        ("CMakeLists.txt", "install(DIRECTORY launch)", ""),
+        ("README", "", ""),
+    ],
+)
+def test_launch_files_that_are_not_installed(
+    workspace: Workspace, monkeypatch: pytest.MonkeyPatch, file: str, text: str, told: str
+) -> None:
+    """ROS 2 would not find them."""
+    monkeypatch.chdir(workspace.root)
+    folder = workspace.packages["lamp"].folder
+    (folder / "setup.py").unlink()
+    (folder / file).write_text(text)
+    package = find_workspace(workspace.root).packages["lamp"]
+    assert uninstalled_launch_files(package) == ""
+    (folder / "launch").mkdir()
+    found = uninstalled_launch_files(package)
+    assert found.startswith(told) if told else found == ""
 
 
 def test_workspaces_within_another(workspace: Workspace) -> None:
