@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Annotated, Any, get_args
 
 from pydantic import (
@@ -23,6 +24,7 @@ from graphflow.domain import DOMAIN_VARIABLES
 from graphflow.interface import DeadlockPolicy, WhenFull
 from graphflow.machines.restarts import BACKOFF, POLICIES
 from graphflow.names import nearest
+from graphflow.reading import found_text
 from graphflow.times import seconds_in
 
 FROM_GROUPS = " of groups"
@@ -48,12 +50,20 @@ def class_meant(text: str) -> str:
         return f"Python imports no name with a hyphen; rename {file} to {file.replace('-', '_')}"
     dotted, _, last = module.rpartition(".")
     if not colon and last[:1].isupper() and _CLASS.match(f"{dotted}:{last}"):
-        return f"write {dotted}:{last}"
+        return f"write {_module_with(last, dotted)}:{last}"
     if not name.strip() and module != text.strip() and _CLASS.match(f"{module}:A"):
         return f"write the class in it, too: {module}:CLASS"
     if _CLASS.match(f"{module}:{name.strip()}"):
         return f"write {module}:{name.strip()}"
     return "write package.module:Class, for example nodes.talker:Talker"
+
+
+def _module_with(name: str, package: str) -> str:
+    """Return the module of a package that has a class; the package itself if none is found in the working directory."""
+    for file in sorted(Path(package.replace(".", "/")).glob("*.py")):
+        if re.search(rf"^class {name}\b", found_text(file, "replace"), re.MULTILINE):
+            return package if file.stem == "__init__" else f"{package}.{file.stem}"
+    return package
 
 
 def _interface_type(text: str) -> str:

@@ -10,6 +10,8 @@ from __future__ import annotations
 import asyncio
 import functools
 import inspect
+import linecache
+import re
 import sys
 import time
 from collections.abc import Callable, Coroutine, Generator, Iterator
@@ -273,6 +275,10 @@ def _too_long(ended: BaseException, seconds: float, waits: list[str]) -> str:
     text = f"the test was not done after {seconds:.0f} s{f', and waited in {where}' if where else ''}"
     if waits:
         return f"{text}: {'; '.join(waits)}"
+    file, _, line = where.rpartition(":")
+    slept = re.search(r"await\s+([\w.]*\bclock)\.sleep\((.*)\)", linecache.getline(file, int(line))) if line else None
+    if slept is not None:
+        return f"{text}: a test's clock moves when it is told to; write await {slept[1]}.advance({slept[2]})"
     return (
         f"{text}. If it waits for time, or for a node that is not there, advance the clock meanwhile: "
         "start it with asyncio.ensure_future, then await graph.clock.advance(1.0). If it works that long, mark it with "

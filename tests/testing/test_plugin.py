@@ -222,6 +222,26 @@ def test_a_test_that_waits_for_a_service(pytester: pytest.Pytester, monkeypatch:
     )
 
 
+def test_a_test_that_sleeps(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the graph's clock, is shown how time passes."""
+    monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.2)
+    result = run(
+        pytester,
+        """
+        from counter import Counter
+
+        async def test_it(graph):
+            await graph.start(Counter())
+            await graph.clock.sleep(0.5)
+        """,
+    )
+
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        ["*TimeoutError: *: a test's clock moves when it is told to; write *clock.advance(0.5)"]
+    )
+
+
 @slow
 def test_a_test_that_stands_still_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     """It waits for time, and its clock does not move; a busy test continues."""

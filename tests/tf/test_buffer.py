@@ -145,6 +145,16 @@ async def test_errors_name_the_publisher(graph: Graph) -> None:
         listener.tf.get("odom", "base_link", ahead)
     with pytest.raises(ExtrapolationError, match=r"kept is .* s newer; the node keeps 10\.00 s, more with Transforms"):
         listener.tf.get("odom", "base_link", Time(graph.clock.time_ns() - 5 * 10**9))
+    listener.create_publisher(TFMessage, "/tf", 10).publish(
+        TFMessage(
+            transforms=[Transform.of("base_link", "laser", stamp=Time(graph.clock.time_ns() - 2 * 10**9)).to_msg()]
+        )
+    )
+    await graph.settle()
+    with pytest.raises(
+        ExtrapolationError, match=r"; base_link -> laser was sent once, at that time: send it again, or"
+    ):
+        listener.tf.get("odom", "laser")
     with pytest.raises(ExtrapolationError, match="use_sim_time on both nodes"):
         listener.tf.get("odom", "base_link", Time(1))
     with pytest.raises(UnconnectedFrames, match=r"odom is the root of a tree, .* \(waited 0\.5 s\)"):

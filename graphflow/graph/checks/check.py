@@ -154,9 +154,10 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
         declared = interface.param(name)
         if declared is None:
             # Imported here: workers check too, and a graph without mistakes does without the models of files.
-            from graphflow.graph.checks.parameter_slips import misplaced_key
+            from graphflow.graph.checks.parameter_slips import misplaced_key, set_in_a_method
 
             key, way = misplaced_key(name, known)
+            way = way or set_in_a_method(name, interface.place)
             if interface.dynamic_names is not True and not setting.is_optional and key not in misplaced:
                 yield Problem(
                     setting.place, f"{_class(interface)} has no parameter {name!r}{way or did_you_mean(name, known)}"

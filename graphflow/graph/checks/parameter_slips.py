@@ -6,7 +6,7 @@ import linecache
 import re
 from collections.abc import Collection
 
-from graphflow.errors import GraphflowError
+from graphflow.errors import GraphflowError, Place
 from graphflow.graph.model import NodeSpec, keys_of
 from graphflow.graph.plan import Setting
 from graphflow.interface import Parameter
@@ -102,3 +102,16 @@ def misplaced_key(name: str, known: Collection[str]) -> tuple[str, str]:
     if key not in keys_of(NodeSpec) or nearest(name, known, cutoff=0.8) is not None:
         return "", ""
     return key, f"; {key} is a key of the node: indent it as params: is"
+
+
+def set_in_a_method(name: str, cls: Place) -> str:
+    """Return the line that sets a parameter on `self`, where none is declared, as the end of a message; else "".
+
+    Args:
+        cls: The place of the class.
+    """
+    pattern = re.compile(rf"\s*self\.{re.escape(name)}\s*=\s*Param\(")
+    at = next((number for number, line in enumerate(linecache.getlines(cls.file), 1) if pattern.match(line)), None)
+    return (
+        "" if at is None else f"; write {name} = Param(...) in the body of the class, and not in {Place(cls.file, at)}"
+    )

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.errors import Place
-from graphflow.graph.checks.parameter_slips import misplaced_key, value_correction
+from graphflow.graph.checks.parameter_slips import misplaced_key, set_in_a_method, value_correction
 from graphflow.graph.plan import Setting
 from graphflow.interface import Parameter
 
@@ -85,3 +85,17 @@ def test_keys_of_nodes() -> None:
     assert misplaced_key("log_level", ["rate"])[0] == "log_level"
     assert misplaced_key("args", ["arg"]) == ("", "")
     assert misplaced_key("rte", ["rate"]) == ("", "")
+
+
+def test_a_parameter_that_a_method_sets(tmp_path: Path) -> None:
+    """It is declared in the body of its class."""
+    file = tmp_path / "walker.py"
+    file.write_text(
+        "class Walker(Node):\n    def __init__(self):\n        self.speed = Param(1.0)\n        self.rate = 1.0\n"
+    )
+    place = Place(str(file), 1)
+    assert set_in_a_method("speed", place) == (
+        f"; write speed = Param(...) in the body of the class, and not in {file}:3"
+    )
+    assert set_in_a_method("rate", place) == ""
+    assert set_in_a_method("speed", Place("nowhere.py", 1)) == ""

@@ -42,11 +42,22 @@ def _single(definition: ast.ClassDef, name: str, method: str) -> Iterator[tuple[
         return  # it is passed on, and may be used anywhere
     sends = [(use, parents) for use, parents in uses if getattr(parents[-1], "attr", "") == method]
     methods = {*_STARTS, *_called_at_start(definition)}
-    if all(_runs_once(parents, methods) for _, parents in sends):
-        for use, _ in sends:
+    once = [(use, parents) for use, parents in sends if _runs_once(parents, methods)]
+    often = {_child(parents) for use, parents in sends if (use, parents) not in once}
+    for use, parents in once:
+        # Beside others that are sent often, it is of another frame, if both frames are known.
+        if not often or ("" not in often and _child(parents) not in ("", *often)):
             text = f"{ast.unparse(use)}.{method} runs once, and its transform holds for that moment alone"
             static = _STATIC[method].format(ast.unparse(use))
             yield use.lineno, f"{text}; for one that never changes, {static}; send others again, as in a timer"
+
+
+def _child(parents: Sequence[ast.AST]) -> str:
+    """Return the child frame of the transform that a call sends, `Transform.of(parent, child, ...)`; "" if unknown."""
+    match parents[-2:]:
+        case [ast.Call(args=[ast.Call(args=[_, ast.Constant(value=str(child)), *_])]), ast.Attribute()]:
+            return child
+    return ""
 
 
 def _called_at_start(definition: ast.ClassDef) -> Iterator[str]:

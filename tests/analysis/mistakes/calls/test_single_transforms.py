@@ -86,3 +86,31 @@ def test_transforms_that_may_be_sent_again(start: str, tick: str) -> None:
 def test_methods_that_run_again(line: str) -> None:
     """As a timer's callback does, or what a loop calls."""
     assert not list(single_transforms(ast.parse(RCLPY.replace("self.make_transforms()", line))))
+
+
+BESIDE = """
+class Odometry(Node):
+    tf = Transforms()
+
+    async def on_start(self):
+        self.tf.send(Transform.of("base_link", {laser}, (0.1, 0.0, 0.2)))
+
+    @subscription(Pose, "pose")
+    async def moved(self, pose):
+        self.tf.send({moving})
+"""
+
+
+@pytest.mark.parametrize(
+    ("laser", "moving", "is_told"),
+    [
+        ('"laser"', 'Transform.of("odom", "base_link", (pose.x, 0.0, 0.0))', True),
+        ('"laser"', 'Transform.of("odom", "laser", (pose.x, 0.0, 0.0))', False),
+        ('"laser"', "self.where(pose)", False),
+        ("self.laser", 'Transform.of("odom", "base_link", (pose.x, 0.0, 0.0))', False),
+    ],
+)
+def test_one_beside_those_that_are_sent_often(laser: str, moving: str, is_told: bool) -> None:
+    """It is of another frame, as far as the source shows both."""
+    found = list(single_transforms(ast.parse(BESIDE.format(laser=laser, moving=moving))))
+    assert [line for line, _ in found] == ([6] if is_told else [])
