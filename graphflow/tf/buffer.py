@@ -292,9 +292,8 @@ class TransformBuffer(AttributeHints):
         if distance > TWO_CLOCKS:
             return "; one of the two times is simulated: set use_sim_time on both nodes, or on neither"
         if error.requested_ns < error.oldest_ns:
-            if late := self._stopped_frame(error):
-                return late
-            return f"; the node keeps {seconds(self._frames.kept)} s, more with Transforms(cache=...)"
+            keeps = f"; the node keeps {seconds(self._frames.kept)} s, more with Transforms(cache=...)"
+            return self._frames.stopped(error) or keeps
         history = self._frames.histories[error.frame]
         rate = f" at {history.rate:.3g} Hz" if history.rate else ""
         silent = self._owner.clock.monotonic_ns() - sender.received_ns
@@ -304,17 +303,6 @@ class TransformBuffer(AttributeHints):
             return "; the node that published it has ended"
         stopped = f", and stopped {seconds(silent)} s ago" if silent > max(to_ns(STOPPED_AFTER), 3 * period) else ""
         return f"; {name} publishes it{rate}{stopped}"
-
-    def _stopped_frame(self, error: ExtrapolationError) -> str:
-        """Describe another frame of the chain whose newest transform is of the requested time; "" if there is none."""
-        histories = self._frames.histories
-        for frame in self._frames.chain(error.target, error.source):
-            history = histories.get(frame)
-            if history is not None and not history.is_static and history.stamps[-1] == error.requested_ns:
-                how = "was sent once" if len(history.stamps) == 1 else "was last sent"
-                text = f"; {history.parents[-1]} -> {frame} {how}, at that time: send it again"
-                return f"{text}, or with send_static (StaticTransformBroadcaster) if it never changes"
-        return ""
 
     def _name_of(self, gid: bytes) -> str | None:
         """Return the full name of the node with a publisher; None if there is none."""

@@ -188,6 +188,16 @@ class Frames:
                 stamps.append(history.stamps[-1])
         return min(stamps, default=0)
 
+    def stopped(self, error: ExtrapolationError) -> str:
+        """Describe another frame of a chain whose newest transform is of the requested time; "" if there is none."""
+        for frame in self.chain(error.target, error.source):
+            history = self.histories.get(frame)
+            if history is not None and not history.is_static and history.stamps[-1] == error.requested_ns:
+                how = "was sent once" if len(history.stamps) == 1 else "was last sent"
+                text = f"; {history.parents[-1]} -> {frame} {how}, at that time: send it again"
+                return f"{text}, or with send_static (StaticTransformBroadcaster) if it never changes"
+        return ""
+
     def _meet(self, target: str, source: str) -> tuple[list[str], str, list[str]]:
         """Return the nearest common ancestor of two frames, and those below it on either side, from the bottom up."""
         ups, downs = self._above(source), self._above(target)
