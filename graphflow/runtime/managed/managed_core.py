@@ -169,7 +169,8 @@ class ManagedCore(NodeCore):
         await self._rest()
         self.on_state(self.state)
         if self.target is None:
-            self.log.info("unconfigured: graphflow lifecycle set %s configure", self.full_name)
+            way = "or write lifecycle: active in a graph file"
+            self.log.info("unconfigured: graphflow lifecycle set %s configure, %s", self.full_name, way)
             return
         for label in path(self.state, self.target):
             await self.trigger(label)
