@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 import importlib.util
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from graphflow.runtime.mistakes.source.project_words import other_modules, words_in
+from graphflow.runtime.mistakes.source import project_words
+from graphflow.runtime.mistakes.source.project_words import is_in_other_files, other_modules, words_in
 
 NAME = "words_of_another_module"
 
@@ -42,3 +44,44 @@ def test_installed_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     """They are none of the project's, though a virtual environment is in its folder."""
     _imported(tmp_path / ".venv/lib/site-packages" / f"{NAME}.py", monkeypatch)
     assert list(other_modules(str(tmp_path / "own.py"), "wanted_word")) == []
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Iterator[Path]:
+    """A folder whose list of files is not kept for later tests."""
+    yield tmp_path
+    project_words._files.cache_clear()
+
+
+def write(file: Path, text: str = "robot.drive()") -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text)
+
+
+@pytest.mark.parametrize(
+    ("file", "is_found"),
+    [
+        ("tests/test_a.py", True),
+        ("a/b/c/d.py", True),
+        ("a/b/c/d/e.py", False),
+        (".cache/a.py", False),
+        ("venv/lib/a.py", False),
+        ("own.py", False),
+        ("a.txt", False),
+    ],
+)
+def test_other_files_that_nothing_has_loaded(project: Path, file: str, is_found: bool) -> None:
+    """Those of the project itself, a few levels deep."""
+    write(project / file)
+    assert is_in_other_files(str(project / "own.py"), "drive") is is_found
+    assert not is_in_other_files(str(project / "own.py"), "driv")
+
+
+@pytest.mark.parametrize(("bound", "most"), [("FILES_BOUND", 2), ("FOLDERS_BOUND", 1)])
+def test_a_folder_with_many_files(project: Path, monkeypatch: pytest.MonkeyPatch, bound: str, most: int) -> None:
+    """Is searched in part: it may be anybody's home."""
+    for number in range(4):
+        write(project / f"a{number}.py", "pass")
+    write(project / "b" / "z.py")
+    monkeypatch.setattr(project_words, bound, most)
+    assert not is_in_other_files(str(project / "own.py"), "drive")
