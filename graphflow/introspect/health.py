@@ -285,7 +285,10 @@ def _unheard(cache: GraphCache) -> tuple[list[str], list[str]]:
             if not who or is_hidden(name) or name in EVERYBODYS:
                 continue
             text = f"{' and '.join(who)} {verbs[len(who) > 1]} {name}, which no node {provides}"
-            best = next((other for other in sorted(offered) if is_misspelt(name, other)), "")
+            types = {e.type for e in users}
+            alike = [other for other in sorted(offered) if is_misspelt(name, other)]
+            of_type = [other for other in alike if types & {e.type for e in cache.endpoints(there, other)}]
+            best = nearest(name, of_type or alike, cutoff=0.0) or ""
             if best:
                 near.append(f"{text}; did you mean {best}?")
             else:

@@ -102,10 +102,11 @@ def set_(name: str, transition: str, timeout: float) -> int:
         ways = {t.transition.label: t.transition for t in transitions(view, node, timeout)}
         wanted = ways.get(transition) or next((t for t in ways.values() if str(t.id) == transition), None)
         if wanted is None:
-            output.error(
-                f"{node} is {state(view, node, timeout).label}, which has no transition {transition!r}"
-                f"{did_you_mean(transition, ways)}"
-            )
+            label = state(view, node, timeout).label
+            if transition == label:
+                output.error(f"{node} is {label} already")
+                return exits.FAILED
+            output.error(f"{node} is {label}, which has no transition {transition!r}{did_you_mean(transition, ways)}")
             output.talk("Unknown transition requested, available ones are:")
             for t in ways.values():
                 output.talk(f"- {t.label} [{t.id}]")

@@ -33,7 +33,10 @@ def wrong_return(
         line = f" ({code.co_filename}:{calls[0].lineno})" if code is not None and len(calls) == 1 else where
         return TypeError(f"it returned an exception: write raise {returned!r}{line}")
     if returned is None:
-        return TypeError(f"it returned None: end it with return {name_of(wanted)}(...){where}")
+        given = [name for name in code.co_varnames[: code.co_argcount] if name != "self"] if code is not None else []
+        # A handler may be given its response to fill in, as in rclpy.
+        what = given[1] if len(given) == 2 and given[1].startswith("res") else f"{name_of(wanted)}(...)"
+        return TypeError(f"it returned None: end it with return {what}{where}")
     return TypeError(f"it returned {returned!r}, not {name_of(wanted)}(...){where}")
 
 

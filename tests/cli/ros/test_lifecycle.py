@@ -38,6 +38,8 @@ def test_a_life(machine: Machine) -> None:
     assert "error: /lc_listener is not a lifecycle node; lifecycle nodes: /lc_talker" in machine.look(
         "lifecycle", "get", "/lc_listener", code=2
     )
+    label = machine.look("lifecycle", "get", "/lc_talker").partition(" ")[0]
+    assert machine.look("lifecycle", "set", "/lc_talker", label, code=1) == f"error: /lc_talker is {label} already\n"
     told = machine.look("lifecycle", "get", "/nobody", code=1)
     assert told == "error: there is no node /nobody; there is /lc_talker\n"  # and not the other
     machine.look("down")

@@ -128,3 +128,16 @@ def test_an_error_that_is_returned() -> None:
     """It is to be raised, in its line."""
     error = wrong_return(Abort("too large"), Fibonacci.Result, Refusing().count)
     assert str(error) == f"it returned an exception: write raise Abort('too large') ({line_of(Refusing.count, 2)})"
+
+
+def test_a_response_that_is_filled_in() -> None:
+    """It is returned, too; a handler without one makes its own."""
+
+    def add(request: object, response: object) -> None: ...
+
+    def ask(request: object) -> None: ...
+
+    assert str(wrong_return(None, AddTwoInts.Response, add, "x.py:1")) == (
+        "it returned None: end it with return response (x.py:1)"
+    )
+    assert "return AddTwoInts.Response(...)" in str(wrong_return(None, AddTwoInts.Response, ask))

@@ -44,24 +44,25 @@ def idle_methods(
             continue
         if method.name.startswith("__") or any(method.name in vars(parent) for parent in cls.__mro__[1:]):
             continue  # the parent calls it
-        way = _way(cls, method, file, space)
-        if way and not any(method.name in words_in(module) for module in other_modules(file, method.name)):
+        way = _way(cls, method, space)
+        if not way or any(method.name in words_in(module) for module in other_modules(file, method.name)):
+            continue
+        if not is_in_other_files(file, method.name):  # a test, or another program, may call it
             yield f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}{way}"
 
 
-def _way(cls: type, method: FunctionNode, file: str, space: dict[str, object]) -> str:
+def _way(cls: type, method: FunctionNode, space: dict[str, object]) -> str:
     """Return what would have a method called, as the end of a sentence; "" if it does not seem to be meant."""
     arguments = [a for a in (*method.args.posonlyargs, *method.args.args) if a.arg != "self"]
     kind = _received(arguments[0], space) if len(arguments) == 1 else ""
-    if kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1):
+    is_of_another = bool(arguments) and arguments[0].annotation is not None  # and not of a message
+    if kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1 and not is_of_another):
         if not arguments and (hook := _hook_meant(cls, method.name)):
             return f"; {hook}"
         decorator = _DECORATORS.get(kind) or (_DECORATORS["message"] if arguments else "@timer(1.0)")
         return f", which looks like a handler: declare it, as with {decorator} above it"
     used = "" if arguments or method.name.startswith("_") else _used_by(method, cls)
-    if not used or is_in_other_files(file, method.name):  # a test, or another program, may call it
-        return ""
-    return f", which uses self.{used}: write @timer(1.0) or @task above it"
+    return used and f", which uses self.{used}: write @timer(1.0) or @task above it"
 
 
 def _used_by(method: FunctionNode, cls: type) -> str:

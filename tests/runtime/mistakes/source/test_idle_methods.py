@@ -81,6 +81,7 @@ def test_methods_that_are_meant_to_be_called(told: Told, body: str, text: str) -
         "async def drive(self, speed):\n    self.out.publish(Int32())",
         "@property\ndef drive(self):\n    return self.out.publish(Int32())",
         "def drive(self):\n    return self.rate",
+        "def handle_outlier(self, reason: str): ...",
         "def drive(self):\n    other.out.publish(Int32())",
     ],
 )
