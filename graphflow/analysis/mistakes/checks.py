@@ -19,6 +19,7 @@ from graphflow.analysis.mistakes.units.nanoseconds import compared_nanoseconds
 from graphflow.analysis.mistakes.units.quaternions import angles_as_quaternions
 from graphflow.analysis.mistakes.units.wrong_scale import wrong_scale
 from graphflow.analysis.mistakes.values.conditions import constant_conditions
+from graphflow.analysis.mistakes.values.contrary_bounds import contrary_bounds
 from graphflow.analysis.mistakes.values.ineffective import ineffective
 from graphflow.analysis.mistakes.values.lost_values import lost_values
 from graphflow.analysis.mistakes.values.never_exact import never_exact
@@ -45,6 +46,7 @@ IN_FILES: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     compared_nanoseconds,
     mixed_angles,
     constant_conditions,
+    contrary_bounds,
     lost_values,
     never_exact,
     contrary_names,

@@ -148,6 +148,22 @@ def test_what_ros_2_would_not_build(machine: Machine, workspace: Path) -> None:
     assert f"{workspace}/src/std_msgs hides ROS 2's std_msgs" in told
 
 
+def test_interfaces_that_cmake_does_not_name(machine: Machine, workspace: Path) -> None:
+    """ROS 2 would not build them; a pattern may name any."""
+    folder = workspace / "src" / "dim_interfaces"
+    (folder / "msg").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>dim_interfaces</name></package>")
+    for name in ("Light", "Dark"):
+        (folder / "msg" / f"{name}.msg").write_text("bool on\n")
+    cmake = folder / "CMakeLists.txt"
+    cmake.write_text('rosidl_generate_interfaces(${PROJECT_NAME}\n  "msg/Light.msg"\n)\n')
+    told = machine.look("ws", cwd=workspace, code=None)
+    assert f"{cmake}: some interfaces are missing, so that ROS 2 would not build them; add to rosidl" in told
+    assert '"msg/Dark.msg"' in told
+    cmake.write_text("file(GLOB messages msg/*.msg)\n")
+    assert "would not build" not in machine.look("ws", cwd=workspace, code=None)
+
+
 def test_a_definition_that_is_not_in_camel_case(machine: Machine, workspace: Path) -> None:
     """The fault has the required name of the file."""
     folder = workspace / "src/lamp_interfaces/srv"

@@ -53,6 +53,10 @@ def read_arguments(
     if own.unknown:
         raise UnknownROSArgsError(f"Found unknown ROS arguments: {own.unknown}")
     remaps = [*own.remaps, *(life.args.remaps if use_global else ())]
+    relative = next((r for r in remaps if r.match == "__ns" and not r.replacement.startswith("/")), None)
+    if relative is not None:
+        way = f"a namespace begins with a slash: -r __ns:=/{relative.replacement}"
+        raise RCLInvalidROSArgsError(f"Failed to parse ROS arguments: -r {relative}: {way}")
     space = namespace or "/"
     space = space if space.startswith("/") else f"/{space}"
     validate_node_name(name)

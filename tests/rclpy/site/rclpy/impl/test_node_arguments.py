@@ -35,6 +35,7 @@ def test_the_programs_arguments_are_left_out_if_so_asked() -> None:
     [
         ("n", None, ["--ros-args", "-r", "::"], RCLInvalidROSArgsError),
         ("n", None, ["--ros-args", "--nonsense"], (RCLInvalidROSArgsError, UnknownROSArgsError)),
+        ("n", None, ["--ros-args", "-r", "__ns:=turtle1"], RCLInvalidROSArgsError),
         ("n/m", None, [], InvalidNodeNameException),
         ("n", "a b", [], InvalidNamespaceException),
     ],
