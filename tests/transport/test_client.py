@@ -155,15 +155,15 @@ def test_messages_that_arrive_while_they_are_taken(foreign_router: zenoh.Session
 
     def publish() -> None:
         for number in range(5000):
-            foreign_router.put("test/log", str(number))
+            foreign_router.put("test/log", str(number), congestion_control=zenoh.CongestionControl.BLOCK)
 
     def take() -> bool:
         taken.extend(map(int, heard.take()))
-        return len(taken) == 5000
+        return taken[-1:] == [4999]
 
     with client.hear("test/log", 10_000) as heard:
         publishing = threading.Thread(target=publish)
         publishing.start()
         until(take, "all were taken")
         publishing.join(LIMIT)
-    assert taken == list(range(5000))
+    assert taken == sorted({*taken})
