@@ -518,12 +518,11 @@ async def test_a_loop_that_polls(
         node.there = True
 
     def watch() -> None:
-        looks, before = type(node).look.__code__, None
-        while True:  # until it stands in `acquire`; on its way there, it would be seen doing something else
+        looks, before, times = type(node).look.__code__, None, 0
+        while times < 20:  # until it stands in `acquire`; on its way there, it would be seen doing something else
             frame = sys._current_frames()[loops_thread]
             now = frame.f_code, frame.f_lasti
-            if now == before and frame.f_code is looks:
-                break
+            times = times + 1 if now == before and frame.f_code is looks else 0
             before = now
             threading.Event().wait(0.01)  # not time.sleep, which the test replaces
         try:
