@@ -277,10 +277,7 @@ class _Translation:
             ros_arguments(item, entries, self._note)
             entries = {"class": Item(found.class_path, name.place, item.at), **entries}
         if found is None or not found.is_always_active:
-            if "brought_to" in item.entries:
-                entries["lifecycle"] = item.entries["brought_to"]
-            if has_value(item, "autostart", "true", "1"):
-                entries["lifecycle"] = item.entries["autostart"].with_value("active")
+            entries |= self._lifecycle(item)
         if "process" in item.entries:  # of a component
             entries["process"] = item.entries["process"]
         if "launch-prefix" in item.entries:
@@ -289,6 +286,11 @@ class _Translation:
         usual = executables.as_name(name.value) if found is None else found.node_name
         key = own.value if own is not None and isinstance(own.value, str) else usual
         self._add_node(body, key, item.with_value(entries).with_key(own.place if own is not None else item.key))
+
+    def _lifecycle(self, item: Item) -> dict[str, Item]:
+        if has_value(item, "autostart", "true", "1"):
+            return {"lifecycle": item.entries["autostart"].with_value("active")}
+        return {"lifecycle": item.entries["brought_to"]} if "brought_to" in item.entries else {}
 
     def _program(self, item: Item, package: Item | None, name: Item) -> dict[str, Item]:
         """Return the entries of a node that is a program: of the workspace, of ROS, or a file."""

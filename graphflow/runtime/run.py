@@ -124,7 +124,7 @@ async def _watch(core: NodeCore, entered: asyncio.Task[object] | None) -> None:
     """
     try:
         await core.wait_ended()
-    except Exception as error:
+    except Exception as error:  # the node's own, of any type
         if entered is None or not entered.done():
             raise
         core.log.error("%s", error)

@@ -164,14 +164,14 @@ def fill(message: TransformStamped, pose: Pose, parent: str, child: str, stamp_n
     (t.x, t.y, t.z), (r.x, r.y, r.z, r.w) = pose
 
 
-def _three(numbers: object, what: str, form: str) -> Vector:
+def _three(numbers: Vector, what: str, form: str) -> Vector:
     """Check three numbers of a caller's.
 
     Raises:
         DeclarationError: They are not three numbers.
     """
     try:
-        x, y, z = map(float, numbers)  # type: ignore[call-overload]
+        x, y, z = map(float, numbers)
     except (TypeError, ValueError):
         raise DeclarationError(f"{what} is three numbers, {form}, and not {numbers!r}") from None
     return x, y, z

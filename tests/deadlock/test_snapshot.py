@@ -515,7 +515,10 @@ async def test_a_loop_that_polls(
     found: list[Any] = []
 
     def pause(seconds: float) -> None:
-        node.there = True
+        if threading.get_ident() == loops_thread:  # other tests may have left threads that sleep
+            node.there = True
+        else:
+            threading.Event().wait(seconds)
 
     def watch() -> None:
         looks, before, times = type(node).look.__code__, None, 0

@@ -39,9 +39,7 @@ def find_graph(text: str) -> Path:
             _refuse_source(path)
         return path
     from graphflow.workspace import installed
-    from graphflow.workspace.packages import find_workspace
     from graphflow.workspace.project import bundled_graphs, project_root, shown
-    from graphflow.workspace.unfound import launching, starts_of
 
     own = project_root(Path.cwd()) / "graphs" / f"{text.removesuffix('.yaml')}.yaml"
     if own.is_file():
@@ -58,11 +56,7 @@ def find_graph(text: str) -> Path:
     if path.exists() and not path.is_dir():
         raise UsageFault(f"{text}: it is not a regular file")
     _refuse_node(text)
-    packages = find_workspace(Path.cwd()).packages
-    if way := launching(text, packages.values()):
-        raise UsageFault(f"{text}: there is no such file{way}")
-    if text in packages:
-        raise UsageFault(f"{text} is a package, not a graph file{starts_of(packages[text])}")
+    _refuse_package(text)
     folder = path if path.is_dir() else path.parent
     files = folder.glob("*.py") if path.suffix == ".py" else (*folder.glob("*.yaml"), *Path("graphs").glob("*.yaml"))
     near = {str(file): file.stem for file in files}
@@ -101,6 +95,22 @@ def _refuse_node(name: str) -> None:
     files = [folder / "nodes" / f"{name}.py" for folder in (root, demos_root())]
     if name in project_nodes(root) or any(file.is_file() for file in files):
         raise UsageFault(f"{name!r} is a node, not a graph: graphflow run {name}")
+
+
+def _refuse_package(text: str) -> None:
+    """Refuse the name of a package, or of a launch file in one, where a graph is expected.
+
+    Raises:
+        UsageFault: It is one of a package of the workspace; the text has the command that starts it.
+    """
+    from graphflow.workspace.packages import find_workspace
+    from graphflow.workspace.unfound import launching, starts_of
+
+    packages = find_workspace(Path.cwd()).packages
+    if way := launching(text, packages.values()):
+        raise UsageFault(f"{text}: there is no such file{way}")
+    if text in packages:
+        raise UsageFault(f"{text} is a package, not a graph file{starts_of(packages[text])}")
 
 
 def _refuse_source(file: Path) -> None:

@@ -75,7 +75,6 @@ def _package_faults(workspace: Workspace) -> Iterator[str]:
     """Report faults of packages: in their own files, invalid names, and names that hide or repeat others."""
     from graphflow.workspace.executables import of_ros
     from graphflow.workspace.manifest import fault_of, name_fault
-    from graphflow.workspace.packages import cmake_text
 
     packages = workspace.packages.values()
     for package in packages:
@@ -89,18 +88,23 @@ def _package_faults(workspace: Workspace) -> Iterator[str]:
     for package in packages:
         if package.name in of_ros() and package.name not in workspace.replaced and package.import_roots:
             yield f"{package.folder} hides ROS 2's {package.name}; rename it, there and in its files"
-    for package in packages:
-        cmake = cmake_text(package)
-        files = [f"{name}.{name.partition('/')[0]}" for name in _interfaces_of(package)]
-        unbuilt = [f'"{file}"' for file in files if file not in cmake]
-        if cmake and unbuilt and "GLOB" not in cmake:
-            text = (
-                f"{package.folder / 'CMakeLists.txt'}: some interfaces are missing, so that ROS 2 would not build them"
-            )
-            yield f"{text}; add to rosidl_generate_interfaces: {' '.join(unbuilt)}"
+    yield from filter(None, map(_unbuilt_interfaces, packages))
     for double in workspace.doubles:
         first = workspace.packages[double.name].folder
         yield f"{double.folder}: another package is called {double.name!r}, too, and takes precedence: {first}"
+
+
+def _unbuilt_interfaces(package: Package) -> str:
+    """Return the fault of a CMakeLists.txt that does not name all interfaces; "" if it has none."""
+    from graphflow.workspace.packages import cmake_text
+
+    cmake = cmake_text(package)
+    files = [f"{name}.{name.partition('/')[0]}" for name in _interfaces_of(package)]
+    unbuilt = [f'"{file}"' for file in files if file not in cmake]
+    if not cmake or not unbuilt or "GLOB" in cmake:
+        return ""
+    text = f"{package.folder / 'CMakeLists.txt'}: some interfaces are missing, so that ROS 2 would not build them"
+    return f"{text}; add to rosidl_generate_interfaces: {' '.join(unbuilt)}"
 
 
 def _interface_faults(package: str, names: Iterable[str]) -> Iterator[str]:
