@@ -45,7 +45,7 @@ def sample(names: Sequence[T], step: int = 4) -> Sequence[T]:
     return names[::step] if _WANTED == "few" else names
 
 
-MANY, MANY_REAL = {"few": (2, 1), "full": (40, 2)}.get(_WANTED, (sys.maxsize, sys.maxsize))
+MANY, MANY_REAL = {"few": (2, 1), "full": (20, 2)}.get(_WANTED, (sys.maxsize, sys.maxsize))
 """Cases of one test that are run, where there are more; of one that starts processes."""
 
 
