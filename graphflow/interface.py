@@ -337,7 +337,7 @@ def type_of(value: Any) -> ParamType:
         if len(kinds) == 1 and (kind := kinds.pop()) in ("bool", "int", "float", "str"):
             return f"list[{kind}]"  # type: ignore[return-value]
     way = "use a bool, int, float, str, bytes, or a list of one of them"
-    if value in (bool, int, float, str, bytes):
+    if isinstance(value, type) and value in (bool, int, float, str, bytes):
         way = f"its default decides the type: write {value()!r}"
     if isinstance(value, dict) and value:
         way = f"it is a mapping, whose keys are parameters of their own, as in NAME.{next(iter(value))}"

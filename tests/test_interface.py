@@ -7,6 +7,7 @@ import math
 from dataclasses import asdict
 from typing import Any
 
+import numpy as np
 import pytest
 
 from graphflow import ParameterError
@@ -159,7 +160,7 @@ def test_types_of_values(value: Any, type_: ParamType, number: int) -> None:
     assert (type_of(value), type_id(value)) == (type_, number)
 
 
-@pytest.mark.parametrize("value", [None, [], [None], [b"x"], [[1]], [1, True], [1, "a"], {}, object()])
+@pytest.mark.parametrize("value", [None, [], [None], [b"x"], [[1]], [1, True], [1, "a"], {}, object(), np.zeros(2)])
 def test_values_that_cannot_be_parameters(value: Any) -> None:
     """Their type cannot be told, or is none of ROS 2's."""
     with pytest.raises(ParameterError, match="cannot be a parameter: use a bool, int, float, str, bytes, or a list of"):

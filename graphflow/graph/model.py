@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, get_args
 
@@ -61,8 +62,9 @@ def class_meant(text: str) -> str:
 def _module_with(name: str, package: str) -> str:
     """Return the module of a package that has a class; the package itself if none is found in the working directory."""
     for file in sorted(Path(package.replace(".", "/")).glob("*.py")):
-        if re.search(rf"^class {name}\b", found_text(file, "replace"), re.MULTILINE):
-            return package if file.stem == "__init__" else f"{package}.{file.stem}"
+        with suppress(OSError):
+            if re.search(rf"^class {name}\b", found_text(file, "replace"), re.MULTILINE):
+                return package if file.stem == "__init__" else f"{package}.{file.stem}"
     return package
 
 

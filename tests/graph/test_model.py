@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 from pydantic import ValidationError
 
-from graphflow.graph.model import TOP_KEYS, Arg, GraphFile, NodeSpec, StepSpec, keys_of
+from graphflow.graph.model import TOP_KEYS, Arg, GraphFile, NodeSpec, StepSpec, class_meant, keys_of
 
 
 def test_the_smallest_file() -> None:
@@ -65,6 +66,16 @@ def test_wrong_class_paths(path: str, way: str) -> None:
     with pytest.raises(ValidationError) as caught:
         NodeSpec.model_validate({"class": path})
     assert str(caught.value.errors()[0]["ctx"]["error"]) == f"{path!r} is not a class; {way}"
+
+
+def test_a_class_of_a_module_in_a_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its module is named if the package's files show it; a file that cannot be read is passed over."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "nodes").mkdir()
+    (tmp_path / "nodes" / "a.py").mkdir()
+    (tmp_path / "nodes" / "talker.py").write_text("class Talker(Node):\n    pass\n")
+    assert class_meant("nodes.Talker") == "write nodes.talker:Talker"
+    assert class_meant("nodes.Listener") == "write nodes:Listener"
 
 
 @pytest.mark.parametrize("name", ["turtlesim/srv/Spawn", "std_srvs/Trigger"])
