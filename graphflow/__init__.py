@@ -286,13 +286,11 @@ def __getattr__(name: str) -> object:
                 raise
             globals()[name] = value
             return value
+    from graphflow.runtime.mistakes.errors.name_errors import home_of
     from graphflow.runtime.mistakes.rclpy_words import translation
 
-    hint = translation(name, "names")
-    from graphflow.runtime.mistakes.errors.name_errors import home_of
-
-    if home := home_of(name):
-        hint = f"write from {home} import {name}"
+    home = home_of(name)
+    hint = f"write from {home} import {name}" if home else translation(name, "names")
     if name[:1].isupper() and name.lower() in __all__:
         hint = f"the decorator is written @{name.lower()}"
     if hint:  # an AttributeError's text would not reach who imports the name

@@ -87,7 +87,7 @@ class Reporter:
         self.foreign: dict[Ring, Foreign] = {}
         """Deadlocks that other processes report."""
         self._left: dict[Ring, str] = {}
-        """Deadlocks that concern this process, be it as a victim, and that it has left to others to report."""
+        """Deadlocks of this process, or in front of it, that others are to report; each with the reporter's id."""
         self._loosened: dict[Ring, int] = {}
         """By foreign deadlock: time at which its waits here were first seen to have ended, in nanoseconds."""
         self._is_watching = False

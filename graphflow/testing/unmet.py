@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _ACTION = "/_action/"
 """The part between an action's name and the names of its services."""
+_REAL_TIMES = ("time.time", "time.monotonic", "time.perf_counter", "datetime.now")
+"""Calls that read a clock which no test moves."""
 
 
 async def unmet(graph: Graph) -> list[str]:
@@ -46,18 +48,16 @@ async def unmet(graph: Graph) -> list[str]:
     return found or [*_real_times(cores)]
 
 
-_REAL_TIMES = ("time.time", "time.monotonic", "time.perf_counter", "datetime.now")
-"""Calls that read a clock which no test moves."""
-
-
 def _real_times(cores: list[NodeCore]) -> Iterator[str]:
     """Find the lines of nodes that read the real time."""
     for cls in dict.fromkeys(type(core.instance) for core in cores):
-        found = definition_of(cls)
-        for node in nodes_in(found[0]) if found is not None else ():
-            if found is not None and isinstance(node, ast.Call) and ast.unparse(node.func) in _REAL_TIMES:
+        if (found := definition_of(cls)) is None:
+            continue
+        definition, file = found
+        for node in nodes_in(definition):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in _REAL_TIMES:
                 text = "reads the real time, and a test moves the graph's: write self.clock.now()"
-                yield f"{Place(found[1], node.lineno)} {text}"
+                yield f"{Place(file, node.lineno)} {text}"
 
 
 def _unfed(graph: Graph, cores: list[NodeCore]) -> Iterator[str]:

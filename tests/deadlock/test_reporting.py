@@ -107,7 +107,7 @@ async def test_the_reporter_does_not_answer(graphflow_runner: asyncio.Runner, ca
 
 
 async def test_the_reporter_answers(graphflow_runner: asyncio.Runner) -> None:
-    """What it reports is known from its answer alone."""
+    """Its reports are known from its answer alone."""
     stage = Stage()
     reporter = Reporter(stage, "report")
     server = Entity(0, "0abc", 0, 1, Kind.SERVICE, "/", "other", "/answer", "std_srvs/srv/Empty", "x")

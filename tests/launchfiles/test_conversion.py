@@ -536,7 +536,7 @@ def test_arguments_are_texts(tmp_path: Path) -> None:
 
 
 def test_values_that_stay_texts(tmp_path: Path) -> None:
-    """Those of the environment, of messages and of other arguments; a parameter is read by YAML 1.1."""
+    """The environment, messages and other arguments keep texts; a parameter is read by YAML 1.1."""
     (tmp_path / "a.launch.xml").write_text(
         """<launch>
         <arg name="id" default="0042"/><arg name="on" default="off"/><arg name="same" default="$(var id)"/>

@@ -100,7 +100,7 @@ def test_launch_files_that_are_not_installed(
 
 
 def test_workspaces_within_another(workspace: Workspace) -> None:
-    """Those whose packages are in a folder `src` of their own."""
+    """A workspace within another has its packages in a folder `src` of its own."""
     assert inner_workspaces(workspace) == []
     write(workspace.root / "src" / "mine" / "src" / "bulb", package_xml=manifest("bulb"))
     assert inner_workspaces(find_workspace(workspace.root)) == [workspace.root / "src" / "mine"]

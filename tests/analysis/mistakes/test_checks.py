@@ -24,7 +24,7 @@ def test_every_module_is_run() -> None:
 
 
 def test_every_check_is_run() -> None:
-    """What a table's module imports, its tables have."""
+    """Each check that a table's module imports is in a table."""
     for name in ("checks.py", "native_source.py", "rclpy_source.py"):
         module = ast.parse((PACKAGE / name).read_text())
         imports = [node for node in module.body if isinstance(node, ast.ImportFrom) and node.module != "__future__"]

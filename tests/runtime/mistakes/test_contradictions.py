@@ -131,7 +131,7 @@ def test_poses_and_joints(message: Any, text: str, caplog: pytest.LogCaptureFixt
     ids=lambda value: value[:20] if isinstance(value, str) else type(value).__name__,
 )
 def test_markers(message: Any, text: str, caplog: pytest.LogCaptureFixture) -> None:
-    """Those that nobody would see."""
+    """Markers that nobody would see are named."""
     [found] = told(message, caplog)
     assert text in found
 

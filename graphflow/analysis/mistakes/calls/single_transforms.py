@@ -42,11 +42,11 @@ def _single(definition: ast.ClassDef, name: str, method: str) -> Iterator[tuple[
         return  # it is passed on, and may be used anywhere
     sends = [(use, parents) for use, parents in uses if getattr(parents[-1], "attr", "") == method]
     methods = {*_STARTS, *_called_at_start(definition)}
-    once = [(use, parents) for use, parents in sends if _runs_once(parents, methods)]
-    often = {_child(parents) for use, parents in sends if (use, parents) not in once}
-    for use, parents in once:
+    often = {_child(parents) for _, parents in sends if not _runs_once(parents, methods)}
+    for use, parents in sends:
         # Beside others that are sent often, it is of another frame, if both frames are known.
-        if not often or ("" not in often and _child(parents) not in ("", *often)):
+        is_other = not often or ("" not in often and _child(parents) not in ("", *often))
+        if is_other and _runs_once(parents, methods):
             text = f"{ast.unparse(use)}.{method} runs once, and its transform holds for that moment alone"
             static = _STATIC[method].format(ast.unparse(use))
             yield use.lineno, f"{text}; for one that never changes, {static}; send others again, as in a timer"

@@ -20,6 +20,7 @@ from graphflow.runtime.mistakes.rclpy_words import AttributeHints, hint_of, text
 _NO_ATTRIBUTE = re.compile(r"'(?P<kind>\w+)' object has no attribute '(?P<name>\w+)'(?P<more> and no __dict__ .*)?")
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+")
 """A dotted name."""
+_AXES = ("x", "y", "z")
 
 
 def explain(error: BaseException) -> None:
@@ -69,9 +70,6 @@ def _of_transform(thing: object, name: str, error: AttributeError) -> str:
     line = linecache.getline(parts[-1].tb_frame.f_code.co_filename, parts[-1].tb_lineno)
     found = re.search(rf"([\w.]*\b(translation|rotation|rpy))\.{name}\b", line)
     return "" if found is None else f"it is a tuple: write {found[1]}[{'xyzw'.index(name)}]"
-
-
-_AXES = ("x", "y", "z")
 
 
 def _near(thing: object, name: str) -> str:

@@ -14,6 +14,9 @@ from typing import Any
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.user_code import is_users, parts_of
 
+MODULES = {name: f"import {name}" for name in sys.stdlib_module_names} | {"np": "import numpy as np"}
+"""The lines that import modules under their usual names."""
+
 
 def owner_of(error: NameError) -> str:
     """Return the correct form of a name that Python does not find; "" if it is not an attribute of a class.
@@ -55,10 +58,6 @@ def _missing_import(name: str) -> str:
     if any(lines):
         return f"write {' or '.join(filter(None, lines))}"
     return f"write {MODULES[name]}" if name in MODULES else ""
-
-
-MODULES = {name: f"import {name}" for name in sorted(sys.stdlib_module_names)} | {"np": "import numpy as np"}
-"""The lines that import modules under their usual names."""
 
 
 def _unbound_local(error: UnboundLocalError, frame: FrameType) -> str:

@@ -19,6 +19,8 @@ from graphflow.runtime.callables import file_of
 
 FOLDERS_BOUND, FILES_BOUND, DEPTH = 200, 500, 3
 """Folders of a project that are searched for files that are not loaded, the files, and the levels of folders."""
+SIZE_BOUND = 1_000_000
+"""Bytes of a file that is searched, at most: the source of a node is far smaller."""
 _OF_TOOLS = ("build", "install", "log", "site-packages", "node_modules", "venv")
 """Folders of a project with files that are not its own."""
 _SHOWING = ("print", "debug", "info", "warning", "warn", "error", "exception", "critical", "fatal", "log")
@@ -44,7 +46,7 @@ def is_in_other_files(file: str, word: str) -> bool:
     from graphflow.workspace.project import project_root
 
     pattern = re.compile(rf"\b{word}\b")
-    return any(path != file and pattern.search(_text(path)) for path in _files(str(project_root(Path(file)))))
+    return any(path != file and pattern.search(_source(path)) for path in _files(str(project_root(Path(file)))))
 
 
 @cache
@@ -60,12 +62,17 @@ def _files(root: str) -> tuple[str, ...]:
     return tuple(found[:FILES_BOUND])
 
 
-@cache
-def _text(file: str) -> str:
+def _source(file: str) -> str:
+    """Return the text of a file that may be anything, and is not kept; "" if it cannot be read, or is too large."""
     try:
-        return found_text(Path(file), "replace")
+        return found_text(Path(file), "replace", SIZE_BOUND)
     except OSError:
         return ""
+
+
+@cache
+def _text(file: str) -> str:
+    return found_text(Path(file))
 
 
 @cache

@@ -69,12 +69,12 @@ def test_sleeps_that_let_others_run(body: str) -> None:
     ],
 )
 def test_loops_that_let_others_run(line: str) -> None:
-    """Those that wait, and those that end."""
+    """Loops that wait or end are left alone."""
     assert told(f"while True:\n    {line}") == []
 
 
 def test_a_loop_with_a_condition() -> None:
-    """What it calls may change it."""
+    """The calls in a loop may change its condition."""
     assert told("while self.is_on:\n    self.step()") == []
 
 

@@ -41,7 +41,7 @@ def test_a_declaration_by_another_name() -> None:
 
 
 def test_a_node_by_another_name() -> None:
-    """What counts is the name that rclpy has for it."""
+    """The name that rclpy has for a class decides."""
     source = SOURCE.replace("(Node)", "(Base)").format("rclpy.node import Node as Base")
     assert len(list(mixed_interfaces(ast.parse(source)))) == 2
 

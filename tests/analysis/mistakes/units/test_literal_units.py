@@ -89,5 +89,5 @@ def test_angles_that_may_be_meant(code: str) -> None:
     ],
 )
 def test_angles_that_a_pose_may_have(code: str) -> None:
-    """Those of another class may be in degrees, and a pose's are small."""
+    """Another class may keep degrees, and a pose's angles are small."""
     assert literal_units(ast.parse(code)) == ()

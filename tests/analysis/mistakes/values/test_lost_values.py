@@ -93,7 +93,7 @@ def test_lost_values(source: str, line: str, told: str) -> None:
     ],
 )
 def test_variables_that_are_read(line: str) -> None:
-    """Those that may be read, whose value is the result of a call, or that the method tells from the attribute."""
+    """Variables may be read, hold the result of a call, or be told from the attribute by the method."""
     assert _told(NATIVE, line) == []
 
 
@@ -120,7 +120,7 @@ def test_variables_of_other_names(source: str, line: str) -> None:
     ],
 )
 def test_messages_that_are_returned(source: str, line: str) -> None:
-    """Those that the handler also publishes or keeps, and those of handlers that other lines call."""
+    """The handler may also publish or keep the message, or other lines may call the handler."""
     assert _told(source, line) == []
 
 

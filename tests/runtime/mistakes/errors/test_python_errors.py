@@ -164,7 +164,7 @@ def test_operands(monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark:
     ],
 )
 def test_with_and_for(monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark: str) -> None:
-    """What they are given, in the words of several versions of Python."""
+    """The same mistake is known in the words of several versions of Python."""
     assert remark_at(monkeypatch, text, line) == remark
 
 

@@ -86,7 +86,7 @@ def test_methods_that_are_meant_to_be_called(told: Told, body: str, text: str) -
     ],
 )
 def test_methods_of_others(told: Told, body: str) -> None:
-    """Those that are called, private, take arguments, or take no part in the graph."""
+    """Methods that are called, private, take arguments, or take no part in the graph are left alone."""
     assert told(body) == []
 
 

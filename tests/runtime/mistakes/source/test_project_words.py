@@ -71,7 +71,7 @@ def write(file: Path, text: str = "robot.drive()") -> None:
     ],
 )
 def test_other_files_that_nothing_has_loaded(project: Path, file: str, is_found: bool) -> None:
-    """Those of the project itself, a few levels deep."""
+    """The project's own files are searched, a few levels deep."""
     write(project / file)
     assert is_in_other_files(str(project / "own.py"), "drive") is is_found
     assert not is_in_other_files(str(project / "own.py"), "driv")

@@ -70,7 +70,7 @@ def test_it_is_told_with_the_one_that_was_meant(name: str, meant: str) -> None:
     ],
 )
 def test_others_are_on_purpose(body: str) -> None:
-    """Those that are read, that no other is like which is read, that differ as pairs do, or are set beside the other.
+    """Attributes may be read, resemble none that is read, differ as pairs do, or be set beside the other.
 
     What a class inside the node sets is not the node's.
     """

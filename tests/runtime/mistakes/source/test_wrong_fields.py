@@ -118,7 +118,7 @@ def test_a_message_in_place_of_its_field(tmp_path: Path) -> None:
     ("type_", "owner"), [("String", "self"), ("PointCloud2", "self"), ("Bool", "self.lamp"), ("Bool", "other")]
 )
 def test_messages_that_are_kept(tmp_path: Path, type_: str, owner: str) -> None:
-    """Those without a bool, or with more than one, may be meant as a whole; others' attributes may be anything."""
+    """A message without a bool, or with several, may be meant as a whole; others' attributes may be anything."""
     assert _told(tmp_path, FLAG.format(type_, owner)) == []
 
 

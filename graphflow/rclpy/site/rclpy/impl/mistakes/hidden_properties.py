@@ -14,9 +14,9 @@ def refuse_hidden_properties(cls: type, base: type) -> None:
     Raises:
         AttributeError: It does; the text has the method and its line.
     """
-    for name, own in vars(base).items():
-        found = inspect.getattr_static(cls, name) if isinstance(own, property) else own
-        if isinstance(own, property) and not isinstance(found, property):
+    for name in (name for name, own in vars(base).items() if isinstance(own, property)):
+        found = inspect.getattr_static(cls, name)
+        if not isinstance(found, property):
             code = code_of(found)
             where = f" ({short_place(code.co_filename, code.co_firstlineno)})" if code is not None else ""
             raise AttributeError(f"every node has {name!r} already: choose another name in {cls.__name__}{where}")
