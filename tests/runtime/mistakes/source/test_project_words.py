@@ -77,9 +77,20 @@ def test_other_files_that_nothing_has_loaded(project: Path, file: str, is_found:
     assert not is_in_other_files(str(project / "own.py"), "driv")
 
 
+def test_a_large_file(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of more than the bound is not searched, and the text of a smaller one is not kept."""
+    write(project / "a.py")
+    own = str(project / "own.py")
+    assert is_in_other_files(own, "drive")
+    write(project / "a.py", "robot.stop()")
+    assert not is_in_other_files(own, "drive")
+    monkeypatch.setattr(project_words, "SIZE_BOUND", 5)
+    assert not is_in_other_files(own, "stop")
+
+
 @pytest.mark.parametrize(("bound", "most"), [("FILES_BOUND", 2), ("FOLDERS_BOUND", 1)])
 def test_a_folder_with_many_files(project: Path, monkeypatch: pytest.MonkeyPatch, bound: str, most: int) -> None:
-    """Is searched in part: it may be anybody's home."""
+    """Such a folder is searched in part, since it may be anybody's home."""
     for number in range(4):
         write(project / f"a{number}.py", "pass")
     write(project / "b" / "z.py")
