@@ -226,12 +226,12 @@ class Runner:
         group: HandlerGroup | None
         until = monotonic() + SLICE
         try:
-            for _ in range(most):
+            for begun in range(most):
                 if granted is not None:
                     group, granted = granted, None
                 elif not items or self._closed:
                     return
-                elif monotonic() > until:
+                elif begun and monotonic() > until:
                     break
                 else:
                     group = self.group  # the handler may have moved itself

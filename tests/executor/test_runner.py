@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import itertools
 import weakref
 from asyncio import CancelledError
 from collections import deque
@@ -746,6 +747,20 @@ async def test_a_slow_handler_gives_the_loop_its_turns(
         await asyncio.sleep(0)
         turns.append(runs - before)
     assert [n for n in turns if n] == [1, 1, 1, 5, 3]
+
+
+async def test_a_pause_of_the_process_does_not_change_the_order(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A handler that is woken begins at once, even if SLICE passes before its first run."""
+    times = itertools.count()
+    order: list[str] = []
+    benches = [Bench(order.append), Bench(order.append)]
+    monkeypatch.setattr(runner, "monotonic", lambda: float(next(times)))
+    benches[0].put("first", "third")
+    benches[1].put("second")
+    await settle()
+    assert order == ["first", "second", "third"]
 
 
 async def test_arrivals_do_not_add_up_to_longer_bursts(graphflow_runner: asyncio.Runner) -> None:
