@@ -106,8 +106,11 @@ class View:
         verb = "subscribes" if len(nodes) == 1 else "subscribe"
         return f"; {' and '.join(nodes[:TAKEN_SHOWN])} {verb} to it, and nothing publishes it{self._stopped()}"
 
-    def service_types(self, name: str) -> list[str]:
+    def service_types(self, name: str, wanted: str = "") -> list[str]:
         """Return the types of an offered service: several, if nodes announce different ones.
+
+        Args:
+            wanted: The type that the caller expects, for the suggestion.
 
         Raises:
             ServiceUnavailable: No node offers it; the text suggests the nearest.
@@ -115,13 +118,20 @@ class View:
         types = sorted({server.type for server in self.cache.endpoints(Kind.SERVICE, name)})
         if types:
             return types
-        client = any(e.kind is Kind.CLIENT for e in self.cache.named(name))
-        offered = self.cache.offered()
-        near = did_you_mean(name, *offered) if client else self.cache.instead(name, *offered)
+        named, offered = self.cache.named(name), self.cache.offered()
+        if wanted and not named:
+            near = self.cache.service_of_type(name, wanted)
+        elif any(e.kind is Kind.CLIENT for e in named):
+            near = did_you_mean(name, *offered)
+        else:
+            near = self.cache.instead(name, *offered)
         raise ServiceUnavailable(f"no node offers the service {name}{near or self.nobody_here()}{self._stopped()}")
 
-    def wait_for_service(self, name: str, timeout: float) -> None:
+    def wait_for_service(self, name: str, timeout: float, wanted: str = "") -> None:
         """Wait until a node offers the service.
+
+        Args:
+            wanted: The type that the caller expects, for the suggestion.
 
         Raises:
             ServiceUnavailable: No node did within `timeout` seconds.
@@ -130,7 +140,7 @@ class View:
         while not self.cache.endpoints(Kind.SERVICE, name):
             if time.monotonic() > deadline:
                 # It raises, with the nearest name.
-                self.service_types(name)
+                self.service_types(name, wanted)
             time.sleep(0.05)
             self.refresh()
 

@@ -8,10 +8,10 @@ Source: rmw_zenoh graph_cache; the queries are those of rmw's graph functions.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from graphflow.names import did_you_mean, is_hidden
+from graphflow.names import did_you_mean, is_hidden, nearest
 from graphflow.wire.liveliness import Entity, Kind, parse_token
 
 ACTION_FEEDBACK = "/_action/feedback"
@@ -22,7 +22,9 @@ _OF_EVERY_NODE = ("rcl_interfaces/srv/", "type_description_interfaces/srv/")
 TOKENS_BOUND = 100_000
 """Tokens of a domain that are kept, at most."""
 _SHOWN = 3
-"""Most names of a namespace that a message lists."""
+"""Most names of a namespace or type that a message lists."""
+_HARDLY_DIFFERENT = 0.8
+"""Least similarity (0 to 1) of a name of another type to the one that was written."""
 
 
 class GraphChange(NamedTuple):
@@ -157,6 +159,16 @@ class GraphCache:
             return f"; it is a namespace, with {', '.join(inside[:_SHOWN])}{more}"
         return did_you_mean(name, known, hidden)
 
+    def service_of_type(self, name: str, type_name: str) -> str:
+        """Return the end of a message that no node offers a service of a type: the services that may be meant."""
+        types = self._types(Kind.SERVICE, hidden=False)
+        return _of_type(name, type_name, types, self.offered()[0])
+
+    def action_of_type(self, name: str, type_name: str) -> str:
+        """Return the end of a message that no node offers an action of a type: the actions that may be meant."""
+        types, served = self.actions(), set(self.served_actions()) - {name}
+        return _of_type(name, type_name, {action: types[action] for action in served}, served)
+
     def unpublished(self, topic: str, known: Iterable[str] | None = None) -> str:
         """Return a message that a topic has no publisher, with a suggestion unless it has subscriptions.
 
@@ -184,3 +196,22 @@ class GraphCache:
             if e.kind in kinds and (hidden or not is_hidden(e.name)):
                 found.setdefault(e.name, set()).add(e.type)
         return {name: sorted(found[name]) for name in sorted(found)}
+
+
+def _of_type(name: str, type_name: str, types: Mapping[str, Sequence[str]], users: Iterable[str]) -> str:
+    """Return the end of a message that a name is not offered: others of its type, or one that is hardly different.
+
+    The nearest name of any type would mislead: a client of `Spawn` does not mean `/turtle1/set_pen`.
+
+    Args:
+        types: The types of all names that are offered.
+        users: Those that are not of every node.
+    """
+    same = sorted(other for other in types if type_name in types[other])
+    if like := nearest(name, same):
+        return f"; did you mean {like!r}?"
+    if same:
+        more = f" and {len(same) - _SHOWN} more" if len(same) > _SHOWN else ""
+        return f"; of that type there is {', '.join(same[:_SHOWN])}{more}"
+    like = nearest(name, sorted(users), cutoff=_HARDLY_DIFFERENT)
+    return f"; did you mean {like!r}, of type {' and '.join(types[like])}?" if like else ""

@@ -207,6 +207,35 @@ def test_calls_of_which_nobody_tells() -> None:
     assert cache.without_events("/chatter") == f"no node offers the service /chatter; it is a topic, of type {STRING}"
 
 
+SPAWN = "turtlesim/srv/Spawn"
+TURTLESIM = [
+    endpoint(TALKER, 10 + i, Kind.SERVICE, name, f"turtlesim/srv/{type_}")
+    for i, (name, type_) in enumerate([("/spawn", "Spawn"), ("/kill", "Kill"), ("/turtle1/set_pen", "SetPen")])
+]
+
+
+@pytest.mark.parametrize(
+    ("name", "type_name", "told"),
+    [
+        ("/spwan", SPAWN, "; did you mean '/spawn'?"),
+        ("/turtle1/spawn", SPAWN, "; did you mean '/spawn'?"),
+        ("/new_turtle", SPAWN, "; of that type there is /spawn"),
+        ("/turtle1/set_pem", SPAWN, "; of that type there is /spawn"),
+        ("/turtle1/set_pem", ADD, "; did you mean '/turtle1/set_pen', of type turtlesim/srv/SetPen?"),
+        ("/turtle1/set_position", ADD, ""),
+    ],
+)
+def test_services_in_place_of_one_that_nobody_offers(name: str, type_name: str, told: str) -> None:
+    """They are of its type; one of another type only if the name is hardly different."""
+    assert cache_of(TALKER, *TURTLESIM).service_of_type(name, type_name) == told
+
+
+def test_services_of_one_type_are_counted() -> None:
+    """Few are listed."""
+    many = [endpoint(TALKER, i, Kind.SERVICE, f"/{c}{c}{c}", SPAWN) for i, c in enumerate("abcde")]
+    assert cache_of(*many).service_of_type("/x", SPAWN) == "; of that type there is /aaa, /bbb, /ccc and 2 more"
+
+
 def test_repr_counts() -> None:
     """What is printed says how much there is."""
     assert repr(cache_of(*GRAPH)) == "<GraphCache 2 nodes, 5 tokens>"

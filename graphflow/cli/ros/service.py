@@ -158,7 +158,7 @@ def call(
         if full not in view.cache.services(hidden=True):
             output.talk("waiting for service to become available...")
             try:
-                view.wait_for_service(full, min(timeout, 2.0))
+                view.wait_for_service(full, min(timeout, 2.0), wanted)
             except ServiceUnavailable as error:
                 from graphflow.cli.ros.supervised import with_ended  # most calls find their server
 

@@ -118,7 +118,7 @@ def _without_strays(
     """Report misplaced keys of nodes; returns the other faults."""
     strays = {path[:2]: str(path[1]).lstrip("/") for path, fault in faults if _is_stray(path, fault)}
     for path, key in strays.items():
-        problems.add(src.key_place(path), _belongs_to_a_node(key))
+        problems.add(src.key_place(path), _belongs_to_a_node(f"{key}:", key))
     return [(path, fault) for path, fault in faults if path[:2] not in strays]
 
 
@@ -138,9 +138,9 @@ def _is_stray(path: source.Path, fault: Fault) -> bool:
     return len(path) == 2 or (len(path) == 3 and path[2] == "class" and fault["type"] == "missing")
 
 
-def _belongs_to_a_node(key: str) -> str:
+def _belongs_to_a_node(subject: str, key: str) -> str:
     several = ", or for several nodes into a group: with its nodes:" if key in keys_of(GroupBlock) else ""
-    return f"{key}: belongs to a node; indent it below the node's name, beside class:{several}"
+    return f"{subject} belongs to a node; indent it below the node's name, beside class:{several}"
 
 
 def _misspelt(
@@ -191,8 +191,11 @@ def unknown_key(key: str, known: Collection[str], value: object = None) -> str:
     )
     if correction:
         return f"unknown key {key!r}; {correction}"
-    if "nodes" in known and key in keys_of(NodeSpec):
-        return _belongs_to_a_node(key)
+    of_nodes = keys_of(NodeSpec)
+    if "nodes" in known and key in of_nodes:
+        return _belongs_to_a_node(f"{key}:", key)
+    if "nodes" in known and nearest(key, known) is None and (near := nearest(key, of_nodes)):
+        return f"unknown key {key!r}; did you mean {near!r}? {_belongs_to_a_node('It', near)}"
     head = key.partition(":")[0]
     if head in known and head != key:
         return f"unknown key {key!r}; write a space after '{head}:'"

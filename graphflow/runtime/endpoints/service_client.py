@@ -32,7 +32,7 @@ from graphflow.machines.cache import GraphCache
 from graphflow.machines.waits.wait_graph import call_id
 from graphflow.msgs import registry
 from graphflow.msgs.base import Request, Response, Service
-from graphflow.names import did_you_mean, is_hidden
+from graphflow.names import is_hidden
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.endpoints.direct_calls import ClientLine
 from graphflow.runtime.endpoints.endpoint import Endpoint
@@ -54,7 +54,7 @@ EXPLAINED = 1.0
 
 
 def nobody_serves(cache: GraphCache, name: str, type_name: str, *, is_own: bool = False) -> str:
-    """Return a sentence on a service that no node offers, with similar ones on offer.
+    """Return a sentence on a service that no node offers, with those of its type.
 
     Args:
         is_own: Whether the calling node itself declares the service but is not ready yet.
@@ -64,7 +64,7 @@ def nobody_serves(cache: GraphCache, name: str, type_name: str, *, is_own: bool 
         return f"service {name} is of type {offered[0]}, not {type_name}"
     if is_own:
         return f"service {name} is this node's own, and opens when on_start has returned; call it in a @task"
-    return f"no node offers the service {name} [{type_name}]{did_you_mean(name, *cache.offered())}"
+    return f"no node offers the service {name} [{type_name}]{cache.service_of_type(name, type_name)}"
 
 
 class _Reply(NamedTuple):

@@ -177,22 +177,26 @@ def test_examples_fit_where_they_are_given() -> None:
     assert example("nodes", "a", "class") == ""
 
 
-BELONGS = "{}: belongs to a node; indent it below the node's name, beside class:{}"
+BELONGS = "{} belongs to a node; indent it below the node's name, beside class:{}"
 SEVERAL = ", or for several nodes into a group: with its nodes:"
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("nodes:\n  /a: {class: x:Y}\n  /params: {rate: 2.0}\n", [f"3:3: {BELONGS.format('params', SEVERAL)}"]),
-        ("nodes:\n  /a: {class: x:Y}\n  /process: main\n", [f"3:3: {BELONGS.format('process', '')}"]),
-        ("nodes:\n  /a: {class: x:Y}\nparams: {rate: 2.0}\n", [f"3:1: {BELONGS.format('params', SEVERAL)}"]),
-        ("nodes:\n  /a: {class: x:Y}\nremap: {a: b}\n", [f"3:1: {BELONGS.format('remap', SEVERAL)}"]),
+        ("nodes:\n  /a: {class: x:Y}\n  /params: {rate: 2.0}\n", [f"3:3: {BELONGS.format('params:', SEVERAL)}"]),
+        ("nodes:\n  /a: {class: x:Y}\n  /process: main\n", [f"3:3: {BELONGS.format('process:', '')}"]),
+        ("nodes:\n  /a: {class: x:Y}\nparams: {rate: 2.0}\n", [f"3:1: {BELONGS.format('params:', SEVERAL)}"]),
+        ("nodes:\n  /a: {class: x:Y}\nremap: {a: b}\n", [f"3:1: {BELONGS.format('remap:', SEVERAL)}"]),
         (
             "nodes:\n  /a: {class: x:Y, rate: 2.0}\n",
             ["2:20: unknown key 'rate'; a parameter is written under params:, as in params: {rate: 2.0}"],
         ),
         ("nodes:\n  /a: {class: x:Y, critcal: true}\n", ["2:20: unknown key 'critcal'; did you mean 'critical'?"]),
+        (
+            "nodes:\n  /a: {class: x:Y}\nparams_fil: p.yaml\n",
+            [f"3:1: unknown key 'params_fil'; did you mean 'params_file'? {BELONGS.format('It', SEVERAL)}"],
+        ),
         ("nodes:\n  /params: {class: x:Y}\n", []),
     ],
 )

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 from graphflow.deadlock.startup_waits import place_of
 from graphflow.machines.cache import GraphCache
-from graphflow.names import did_you_mean, is_hidden
+from graphflow.names import is_hidden
 from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS, to_ns
 
@@ -76,10 +76,8 @@ class Unserved:
 
 
 def nobody_acts(cache: GraphCache, name: str, type_name: str) -> str:
-    """Return a sentence on an action that no node offers, with similar ones on offer."""
-    actions = cache.actions()
-    offered = [type_ for type_ in actions.get(name, ()) if type_ != type_name]
+    """Return a sentence on an action that no node offers, with those of its type."""
+    offered = [type_ for type_ in cache.actions().get(name, ()) if type_ != type_name]
     if offered:
         return f"action {name} is of type {offered[0]}, not {type_name}"
-    near = did_you_mean(name, [other for other in actions if other != name])
-    return f"no node offers the action {name} [{type_name}]{near}"
+    return f"no node offers the action {name} [{type_name}]{cache.action_of_type(name, type_name)}"
