@@ -38,6 +38,8 @@ class Kind(StrEnum):
 
 NODES = f"{ADMIN_SPACE}/*/*/*/*/{Kind.NODE}/**"
 """The key that matches the tokens of all nodes in all domains."""
+ALL = f"{ADMIN_SPACE}/**"
+"""The key that matches all tokens in all domains."""
 
 
 def _mangle(name: str) -> str:

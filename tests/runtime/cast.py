@@ -304,10 +304,17 @@ def refusal_of(make: Callable[[], object]) -> str:
 
 
 @asynccontextmanager
-async def running_in(graph: Graph, domain: int) -> AsyncIterator[None]:
-    """Run a node of a graph's network in another domain."""
+async def running_in(
+    graph: Graph, domain: int, opened: Callable[[Node], object] = lambda _: None
+) -> AsyncIterator[None]:
+    """Run a node of a graph's network in another domain.
+
+    Args:
+        opened: Opens the node's endpoints.
+    """
     context = Context(graph.network.session(asyncio.get_running_loop()), domain=domain, clock=graph.clock)
     node = Node("elsewhere")
+    opened(node)
     await core_of(node).start(context)
     try:
         yield

@@ -3,30 +3,38 @@
 from __future__ import annotations
 
 from asyncio import Future
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from graphflow.deadlock.protocols import ProcessContext
 from graphflow.domain import domain_variable
-from graphflow.machines.domains import COMMANDS, elsewhere
+from graphflow.machines.domains import COMMANDS, elsewhere, with_counterpart
 from graphflow.names import is_hidden
-from graphflow.wire.liveliness import NODES
+from graphflow.wire.liveliness import ALL, NODES, Entity
 
 ANSWER_LIMIT = 0.2
 """Seconds to wait for the rendezvous's list of nodes."""
 
 
-def look_elsewhere(here: ProcessContext, node: str, report: Callable[[str], None]) -> None:
+def look_elsewhere(
+    here: ProcessContext, node: str, report: Callable[[str], None], lacking: Sequence[Entity] = ()
+) -> None:
     """Check whether a node is alone in its domain while other domains have nodes.
 
     Args:
         node: The node's full name.
         report: Called on the loop, possibly at once, with a sentence; "" if the node is not alone.
+        lacking: Endpoints without a counterpart: only domains that have one count, since others are other people's.
     """
     if any(other != node for other in here.cache.nodes(hidden=False)):
         report("")
         return
     way = COMMANDS if is_hidden(node) else f"start it with {domain_variable()}={{}} to join"
-    here.session.ask_tokens(NODES, ANSWER_LIMIT, lambda tokens: report(elsewhere(here.domain, tokens, way, (node,))))
+
+    def answered(tokens: list[str]) -> None:
+        among = with_counterpart(lacking, tokens) if lacking else None
+        report(elsewhere(here.domain, tokens, way, (node,), among))
+
+    here.session.ask_tokens(ALL if lacking else NODES, ANSWER_LIMIT, answered)
 
 
 async def alone_here(here: ProcessContext, node: str) -> str:

@@ -1,7 +1,8 @@
 """Topics and services without a counterpart, probably because of a wrong name or domain.
 
 Publishers and subscriptions without a counterpart are legal. So a warning requires that a topic of the same type and a
-similar name has the missing counterpart, or that the node is alone in its domain while other domains have nodes.
+similar name has the missing counterpart, or that the node is alone in its domain while another domain has the
+counterpart.
 """
 
 from __future__ import annotations
@@ -118,7 +119,9 @@ class Unmatched:
                 waiting.log.warning("%s", text)
         logs = {own.node_name: waiting.log for own, waiting in due}
         for name, log in logs.items() if not self._is_domain_reported else ():
-            look_elsewhere(self._here, name, partial(self._report_domain, log))
+            lacking = [own for same in self._waiting.values() for own in same if own.node_name == name]
+            if lacking:
+                look_elsewhere(self._here, name, partial(self._report_domain, log), lacking)
 
     def _report_domain(self, log: logging.Logger, text: str) -> None:
         if text and not self._is_domain_reported and not self._is_closed:

@@ -160,22 +160,37 @@ def open_action_client(node: Node) -> None:
     node.create_action_client(Fibonacci, "/fibonacci")
 
 
-@pytest.mark.parametrize("opened", [open_publisher, open_client, open_action_client])
+async def act(goal: object) -> None:
+    """Carry out no goal."""
+
+
+COUNTERPARTS: list[tuple[Callable[[Node], object], Callable[[Node], object]]] = [
+    (open_publisher, lambda node: node.create_subscription(Twist, "/cmd_vel", lambda _: None)),
+    (open_client, lambda node: node.create_service(AddTwoInts, "/add", lambda _: AddTwoInts.Response())),
+    (open_action_client, lambda node: node.create_action_server(Fibonacci, "/fibonacci", act)),
+]
+
+
+@pytest.mark.parametrize(("opened", "there"), COUNTERPARTS)
 async def test_another_domain(
-    opened: Callable[[Node], None], graph: Graph, caplog: Caplog, monkeypatch: pytest.MonkeyPatch
+    opened: Callable[[Node], object],
+    there: Callable[[Node], object],
+    graph: Graph,
+    caplog: Caplog,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """It is reported once, if the node is alone in its domain."""
+    """It is reported once, if the node is alone in its domain, and the counterpart is in the other."""
     monkeypatch.setenv("GRAPHFLOW_DOMAIN", "0")
     node = Node("n")
     opened(node)
-    async with running_in(graph, 7):
+    async with running_in(graph, 7, there):
         await graph.start(node)
         await graph.clock.advance(WARN_AFTER - 0.1)
         assert caplog.messages == []
         await graph.clock.advance(0.1)
         open_publisher(node)
         await graph.clock.advance(60.0)
-    assert caplog.messages == [
+    assert [record.getMessage() for record in caplog.records if record.name == "graphflow.node.n"] == [
         "this domain, 0, has no other nodes; domain 7 has 1: start it with GRAPHFLOW_DOMAIN=7 to join"
     ]
 
@@ -183,12 +198,22 @@ async def test_another_domain(
 async def test_another_domain_is_none_of_its_business(graph: Graph, caplog: Caplog) -> None:
     """Where a node has all that it needs, and where there are others with it."""
     node = Node("n")
-    node.create_subscription(Twist, "/cmd_vel", lambda _: None)
+    COUNTERPARTS[0][1](node)
     open_publisher(node)
     async with running_in(graph, 7):
         await graph.start(node)
         await graph.clock.advance(60.0)
         await graph.start(Node("other"), Circle())
+        await graph.clock.advance(60.0)
+    assert caplog.messages == []
+
+
+async def test_a_domain_of_others(graph: Graph, caplog: Caplog) -> None:
+    """It is not mentioned, since nobody there is at the other end."""
+    node = Node("n")
+    open_publisher(node)
+    async with running_in(graph, 7, open_publisher), running_in(graph, 8, open_client):
+        await graph.start(node)
         await graph.clock.advance(60.0)
     assert caplog.messages == []
 
