@@ -278,6 +278,8 @@ class Interface:
     """Names of endpoints created at run time: True for any, else patterns such as `*/cmd_vel`."""
     unread: tuple[Place, ...] = ()
     """Places where endpoints are created whose names the source does not show."""
+    made_params: tuple[str, ...] = ()
+    """Patterns of the names of parameters that are made at run time, such as `*.radius` of `f"{wheel}.radius"`."""
     is_managed: bool = False
     """Whether it is a `LifecycleNode`."""
     attributes: tuple[str, ...] = ()
@@ -286,6 +288,10 @@ class Interface:
     def param(self, name: str) -> Parameter | None:
         """Find a parameter of the class, or of every node, by name."""
         return next((p for p in self.params if p.name == name), COMMON_PARAMETERS.get(name))
+
+    def may_have(self, param: str) -> bool:
+        """Return whether a node of the class has a parameter, or may make it at run time."""
+        return self.param(param) is not None or any(fnmatchcase(param, pattern) for pattern in self.made_params)
 
     def to_json(self) -> dict[str, Any]:
         """Return the interface as JSON, which `from_json` reads."""
@@ -308,6 +314,7 @@ class Interface:
             groups={name: GroupInfo(**group) for name, group in data["groups"].items()},
             dynamic_names=dynamic if isinstance(dynamic, bool) else tuple(dynamic),
             unread=tuple(Place(*place) for place in data["unread"]),
+            made_params=tuple(data["made_params"]),
             attributes=tuple(data["attributes"]),
         )
 

@@ -54,6 +54,7 @@ def with_made(cls: type, interface: Interface) -> Interface:
         params=(*interface.params, *(p for p in made.params if interface.param(p.name) is None)),
         handlers=(*interface.handlers, *(h for h in made.handlers if h.name not in declared)),
         unread=tuple(made.unread),
+        made_params=tuple(made.param_patterns),
     )
 
 
@@ -66,6 +67,7 @@ class _Made:
         self.params: list[Parameter] = []
         self.handlers: list[HandlerInfo] = []
         self.unread: list[Place] = []
+        self.param_patterns: list[str] = []
 
     def read(self, cls: type, function: FunctionType) -> None:
         """Read the calls in one method."""
@@ -94,8 +96,11 @@ class _Made:
         handler = "" if maker.handler is None else self._read_handler(cls, call, *maker.handler)
         if maker.name is None:
             return
-        name = _text(_argument(call, maker.name, "name"), function, cls)
-        if name is None:
+        given = _argument(call, maker.name, "name")
+        name = _text(given, function, cls)
+        if name is None and last_name(call.func) == "declare_parameter":
+            self.param_patterns.append(_pattern(given, function, cls))
+        elif name is None:
             self.unread.append(place)
         elif maker.kind is None:
             self.params.append(_parameter(call, name, place))
@@ -163,6 +168,17 @@ def _text(node: ast.expr | None, function: FunctionType, cls: type | None) -> st
     elif isinstance(node, ast.Attribute) and is_own(node) and node.attr.isupper() and cls is not None:
         found = getattr(cls, node.attr, None)
     return found if isinstance(found, str) else None
+
+
+def _pattern(node: ast.expr | None, function: FunctionType, cls: type) -> str:
+    """Return the pattern of a text that is made at run time: `*.radius` of `f"{wheel}.radius"`."""
+    match node:
+        case ast.JoinedStr(values=parts):
+            return "".join(_pattern(part, function, cls) for part in parts)
+        case ast.BinOp(left=left, op=ast.Add(), right=right):
+            return _pattern(left, function, cls) + _pattern(right, function, cls)
+    text = _text(node, function, cls)
+    return "*" if text is None else "".join(f"[{c}]" if c in "*?[" else c for c in text)
 
 
 def _type(node: ast.expr | None, function: FunctionType) -> str:

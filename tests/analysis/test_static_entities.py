@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from dataclasses import replace
 from typing import Any
 
 from graphflow import Group, Node, Param, service
@@ -44,6 +45,23 @@ class Slide(Node):
     def compute(self, goal: Any) -> Any: ...
 
     async def tick(self) -> None: ...
+
+
+class Wheels(Node):
+    """Makes the names of its parameters."""
+
+    TAIL = ".[m]"
+
+    def __init__(self) -> None:
+        super().__init__("wheels")
+        for wheel in ("left", "right"):
+            self.declare_parameter(f"{wheel}.radius", 0.1)
+            self.declare_parameter("gain." + wheel, 0.1)
+            self.declare_parameter(wheel + self.TAIL, 0.1)
+        self.make("width")
+
+    def make(self, name: str) -> None:
+        self.declare_parameter(name, 0.1)
 
 
 class Parent(Node):
@@ -123,6 +141,20 @@ def test_what_cannot_be_read() -> None:
     line = inspect.getsourcelines(Slide.__init__)[1] + next(i for i, s in enumerate(source) if "String, name)" in s)
     assert interface.unread == ((__file__, line, 0),)
     assert Interface.from_json(interface.to_json()) == interface
+
+
+def test_parameters_whose_names_are_made() -> None:
+    """A pattern has what is known of each; a node may have what matches one."""
+    interface = Wheels.interface()
+    assert interface.made_params == ("*.radius", "gain.*", "*.[[]m]", "*")
+    assert (interface.params, interface.unread) == ((), ())
+    assert Interface.from_json(interface.to_json()) == interface
+    some = replace(interface, made_params=interface.made_params[:3])
+    assert [name for name in ("left.radius", "left.radios", "gain.a", "a.[m]", "a.m") if some.may_have(name)] == [
+        "left.radius",
+        "gain.a",
+        "a.[m]",
+    ]
 
 
 def test_what_a_child_replaces() -> None:

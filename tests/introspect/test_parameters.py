@@ -28,7 +28,7 @@ class Robot(View):
         self.values = {"speed": 3, "gain": 5}
         self.calls: list[str] = []
 
-    def wait_for_service(self, name: str, timeout: float) -> None:
+    def wait_for_service(self, name: str, timeout: float, wanted: str = "") -> None:
         assert timeout == STARTING
         if not name.startswith("/robot/"):
             raise CallError(f"no node offers the service {name}")

@@ -99,7 +99,7 @@ def _known(planned: PlannedNode, interface: Interface) -> dict[str, Setting]:
     """Return the planned parameters that the node declares; warn about others that only a launch file sets."""
     known: dict[str, Setting] = {}
     for name, setting in planned.params.items():
-        is_there = interface.param(name) is not None or (setting.is_unchecked and interface.dynamic_names is True)
+        is_there = interface.may_have(name) or (setting.is_unchecked and interface.dynamic_names is True)
         if is_there or not setting.is_optional:
             known[name] = setting
         elif setting.is_unchecked and name not in COMMON_PARAMETERS:

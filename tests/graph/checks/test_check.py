@@ -126,6 +126,17 @@ def test_what_does_not_fit(line: str, problem: str) -> None:
     assert chaser(line) == [problem]
 
 
+def test_parameters_whose_names_are_made() -> None:
+    """They are left to the node, as others are not, however they are set."""
+    made = {"a.b:Chaser": replace(CHASER, made_params=("*.radius",))}
+    text = "nodes:\n  /c: {class: 'a.b:Chaser', params: {left: {radius: 1.0, width: 1.0}}}\n"
+    told = "2:65: Chaser has no parameter 'left.width'"
+    assert [problem.split(";")[0] for problem in problems(text, made)] == [told]
+    text = "group: {params: {left: {radius: 1.0, width: 1.0}}, nodes: {/c: {class: 'a.b:Chaser'}}}\n"
+    told = "1:45: no node of this graph has a parameter 'left.width'"
+    assert [problem.split(";")[0] for problem in problems(text, made)] == [told]
+
+
 def test_keys_of_a_node_below_params() -> None:
     """Each is reported once, however many entries it has."""
     hint = "remap is a key of the node: indent it as params: is"
