@@ -150,7 +150,7 @@ def _part(target: str, given: str, value: object, cls: type[StrictMessage]) -> s
 
 def no_message(error: BaseException, frames: list[FrameType]) -> str:
     """Show how to create a message where its class was passed."""
-    found = re.fullmatch(r"Expected <class '[\w.]*\.(\w+)'>, got <class '[\w.]*\._Generated'>", str(error))
+    found = re.fullmatch(r"Expected <class '[\w.]*\.(\w+)'>, got the class \w+", str(error))
     if found is not None:
         return f"that is a class, not a message: write {found[1].replace('_', '.')}()"
     last = frames[-1].f_locals if frames else {}

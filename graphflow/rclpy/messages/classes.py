@@ -65,9 +65,14 @@ class StrictMessage(metaclass=_Generated):
 
 class _NoInstances(_Generated):
     def __call__(cls, *_: object, **__: object) -> NoReturn:
-        kind, part = ("Action", "Goal") if hasattr(cls, "Goal") else ("Service", "Request")
-        way = f"create a {part.lower()} with {cls.__name__}.{part}()"
-        raise NotImplementedError(f"{kind} classes can not be instantiated: {way}")
+        kind, parts = ("Action", ("Goal", "Result")) if hasattr(cls, "Goal") else ("Service", ("Request", "Response"))
+        ways = " or ".join(f"a {part.lower()} with {cls.__name__}.{part}()" for part in parts)
+        raise NotImplementedError(f"{kind} classes can not be instantiated: create {ways}")
+
+
+def what_came(value: object) -> str:
+    """Return the type of a value for an error, or the class that was passed in place of an instance."""
+    return f"the class {value.__name__}" if isinstance(value, type) else str(type(value))
 
 
 def _same(a: Any, b: Any) -> bool:

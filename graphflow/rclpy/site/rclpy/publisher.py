@@ -74,7 +74,7 @@ class Publisher(Created):
             elif isinstance(msg, bytes):
                 payload = msg
             else:
-                raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+                raise TypeError(f"Expected {self.msg_type}, got {classes.what_came(msg)}")
             # After the check of the type, whose error comes first in rclpy, too.
             if not self._life.is_ok:
                 raise RCLError("Failed to publish: publisher's context is invalid")

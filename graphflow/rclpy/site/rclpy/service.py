@@ -63,7 +63,7 @@ class Service(ServiceEnd):
     def send_response(self, response: object, header: RequestHeader) -> None:
         """Answer a request. Raises TypeError if the response is not of the service's type."""
         if not isinstance(response, self.srv_type.Response):
-            raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
+            raise TypeError(f"Expected {self.srv_type.Response}, got {classes.what_came(response)}")
         with self._handle:
             payload = classes.encode(response)
             self.endpoint.answer(header.asked, payload)

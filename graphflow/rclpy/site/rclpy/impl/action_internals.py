@@ -288,7 +288,7 @@ class ActionServerInternals(ActionInternals):
         """Publish feedback on a goal. Raises TypeError if it is not of the action's feedback type."""
         if not isinstance(feedback, self.action_type.Feedback):
             way = f"write publish_feedback({self.action_type.__name__}.Feedback(...))"
-            raise TypeError(f"Expected {self.action_type.Feedback}, got {type(feedback)}: {way}")
+            raise TypeError(f"Expected {self.action_type.Feedback}, got {classes.what_came(feedback)}: {way}")
         message = self.action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback)
         if self.is_open:
             with sending():

@@ -37,9 +37,8 @@ def _tell(node: Node) -> None:
         endpoint = publisher.endpoint
         if publisher.made_at is not None and 0 < endpoint.published == endpoint.unheard:
             many = "message that was published" if endpoint.published == 1 else "messages that were published"
-            text = (
-                "%s: no subscription has received the %d %s: publish when publisher.get_subscription_count() is not 0"
-            )
+            way = "if one should have, publish when publisher.get_subscription_count() is not 0"
+            text = f"%s: no subscription has received the %d %s; {way}"
             logger.warning(text, endpoint.name, endpoint.published, many)
         elif publisher.made_at is not None and endpoint.published and _is_kept_for_nobody(endpoint):
             text = "%s: %s ends, and with it the message that it keeps for late subscriptions: keep it spinning"
