@@ -54,6 +54,8 @@ class Report(NamedTuple):
     """Processes of the members and of the activities that wait behind them."""
     order: tuple[str, ...]
     """The members, each of which waits for the next."""
+    is_likely: bool
+    """Whether it rests on the source code, which shows the wait of a loop only at some of its lines."""
     is_in_vain: bool
     """Whether a deadline will end it."""
     calls: dict[str, list[str]]
@@ -90,6 +92,8 @@ class Reporter:
         """Deadlocks of this process, or in front of it, that others are to report; each with the reporter's id."""
         self._loosened: dict[Ring, int] = {}
         """By foreign deadlock: time at which its waits here were first seen to have ended, in nanoseconds."""
+        self._doubted: dict[Ring, int] = {}
+        """By likely deadlock: time at which it was first not found again, in nanoseconds."""
         self._is_watching = False
         self._is_closed = False
         self._history: dict[Hashable, int] = {}
@@ -105,6 +109,11 @@ class Reporter:
         """Whether an activity of this process was reported, as a member of a deadlock or as its victim."""
         is_in_one = any(activity in ring for ring in (*self.reports, *self.foreign))
         return is_in_one or any(title in behind for behind in list(self._behind.values()))
+
+    @property
+    def expects_ends(self) -> bool:
+        """Whether deadlocks may have ended, and another look will tell."""
+        return bool(self.foreign or self._doubted)
 
     def forget_victims(self) -> None:
         """Forget which victims were reported, since nothing waits any more."""
@@ -182,7 +191,7 @@ class Reporter:
         in_vain, text = is_in_vain(deadlock, graph), explanation(deadlock, graph)
         calls = {activity.id: _called(activity) for activity in members}
         ring = frozenset(deadlock.ring)
-        self.reports[ring] = Report(text, who, processes, deadlock.ring, in_vain, calls)
+        self.reports[ring] = Report(text, who, processes, deadlock.ring, deadlock.is_likely, in_vain, calls)
         if is_first:
             logger.log(logging.WARNING if in_vain else logging.ERROR, "%s", text)
         elif not in_vain:
@@ -230,11 +239,20 @@ class Reporter:
             unknown = report.processes - processes
             stands = is_ring(report.order, graph, dead) and not report.is_another(graph)
             if stands or any(entity.zid in unknown for entity in self._process.cache):
+                self._doubted.pop(ring, None)
                 continue
+            if report.is_likely and ring <= graph.activities.keys() and not self._is_doubted(ring):
+                continue
+            self._doubted.pop(ring, None)
             del self.reports[ring]
             self._behind.pop(ring, None)
             if not ring <= dead and not report.is_in_vain:  # members that are dead are in another ring, reported next
                 logger.warning("the deadlock of %s has cleared", report.who)
+
+    def _is_doubted(self, ring: Ring) -> bool:
+        """Whether a deadlock has been out of sight for a while, and not only at one line of a loop."""
+        now_ns = self._process.clock.monotonic_ns()
+        return now_ns - self._doubted.setdefault(ring, now_ns) >= to_ns(0.999 * PROBE_AFTER)
 
     def forget_foreign(self, graph: WaitGraph) -> None:
         """Forget deadlocks that others report, and whose waits here ended a while ago: they have cleared.

@@ -199,8 +199,8 @@ class Search:
         self._last.clear()
         self._reporter.forget_victims()
         self._check_stalls(graph, set())
-        if self._reporter.foreign or any(node.tasks for node in self._process.nodes):
-            self._schedule(FORGET_AFTER if self._reporter.foreign else TASKS_EVERY)
+        if self._reporter.expects_ends or any(node.tasks for node in self._process.nodes):
+            self._schedule(FORGET_AFTER if self._reporter.expects_ends else TASKS_EVERY)
 
     def _adapt_period(self, waiting: set[tuple[str, Condition]]) -> None:
         """Probe new waits soon, and the same ones at intervals that double."""

@@ -46,6 +46,27 @@ async def test_a_deadlock_is_explained_once(graphflow_runner: asyncio.Runner, ca
     assert reporter.reports == {}
 
 
+async def test_a_loop_seen_at_another_line(graphflow_runner: asyncio.Runner, caplog: Caplog) -> None:
+    """A likely deadlock stands while its members run: its end is reported once it stays out of sight."""
+    stage = Stage()
+    reporter, here = Reporter(stage, "report"), {stage.session.zid}
+    graph, deadlock = ring_of(stage, own=2, other="")
+    elsewhere = WaitGraph({name: run(name) for name in deadlock.ring})
+    reporter.report(replace(deadlock, is_likely=True), graph)
+    for _ in range(2):
+        reporter.take_back(elsewhere, set(), here)
+        assert reporter.expects_ends
+        await stage.clock.advance(0.2)
+        reporter.take_back(graph, deadlocked(graph), here)
+        assert not reporter.expects_ends
+    assert len(caplog.messages) == len(reporter.reports) == 1
+    reporter.take_back(elsewhere, set(), here)
+    await stage.clock.advance(0.25)
+    reporter.take_back(elsewhere, set(), here)
+    assert caplog.messages[1:] == ["the deadlock of timer tick0 of /node and timer tick1 of /node has cleared"]
+    assert not reporter.expects_ends
+
+
 async def test_the_same_again_takes_a_line(graphflow_runner: asyncio.Runner, caplog: Caplog) -> None:
     """When a deadlock of the same members and lines comes back."""
     stage = Stage()
