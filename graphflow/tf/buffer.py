@@ -292,8 +292,7 @@ class TransformBuffer(AttributeHints):
         if distance > TWO_CLOCKS:
             return "; one of the two times is simulated: set use_sim_time on both nodes, or on neither"
         if error.requested_ns < error.oldest_ns:
-            keeps = f"; the node keeps {seconds(self._frames.kept)} s, more with Transforms(cache=...)"
-            return self._frames.stopped(error) or keeps
+            return self._frames.stopped(error) or self._too_old(error)
         history = self._frames.histories[error.frame]
         rate = f" at {history.rate:.3g} Hz" if history.rate else ""
         silent = self._owner.clock.monotonic_ns() - sender.received_ns
@@ -303,6 +302,13 @@ class TransformBuffer(AttributeHints):
             return "; the node that published it has ended"
         stopped = f", and stopped {seconds(silent)} s ago" if silent > max(to_ns(STOPPED_AFTER), 3 * period) else ""
         return f"; {name} publishes it{rate}{stopped}"
+
+    def _too_old(self, error: ExtrapolationError) -> str:
+        """Say why an earlier transform is not there: it has never come, or is no longer kept."""
+        kept = self._frames.kept
+        if error.newest_ns - error.oldest_ns < kept // 2:
+            return "; none from before has come since this node listens: ask for a later time"
+        return f"; the node keeps {seconds(kept)} s, more with Transforms(cache=...)"
 
     def _name_of(self, gid: bytes) -> str | None:
         """Return the full name of the node with a publisher; None if there is none."""

@@ -132,6 +132,15 @@ async def test_a_group_of_the_node_keeps_none_out(graph: Graph) -> None:
     assert (await answer).message == "0.1"
 
 
+async def test_a_time_that_is_no_longer_kept(graph: Graph) -> None:
+    """The error names the length of the history, and the option for more."""
+    listener = Listener()
+    await graph.start(listener, Odometry())
+    await graph.clock.advance(12.0)
+    with pytest.raises(ExtrapolationError, match=r"kept is .* s newer; the node keeps 10\.00 s, more with Transforms"):
+        listener.tf.get("odom", "base_link", Time(graph.clock.time_ns() - 11 * 10**9))
+
+
 async def test_errors_name_the_publisher(graph: Graph) -> None:
     """And its rate, and that it has stopped or ended."""
     listener, odometry = Listener(), Odometry()
@@ -143,7 +152,7 @@ async def test_errors_name_the_publisher(graph: Graph) -> None:
     ahead = Time(graph.clock.time_ns() + 800_000_000)
     with pytest.raises(ExtrapolationError, match=r"0\.80 s older; /odometry publishes it at 10 Hz$"):
         listener.tf.get("odom", "base_link", ahead)
-    with pytest.raises(ExtrapolationError, match=r"kept is .* s newer; the node keeps 10\.00 s, more with Transforms"):
+    with pytest.raises(ExtrapolationError, match=r"kept is .* s newer; none from before has come"):
         listener.tf.get("odom", "base_link", Time(graph.clock.time_ns() - 5 * 10**9))
     listener.create_publisher(TFMessage, "/tf", 10).publish(
         TFMessage(
