@@ -14,7 +14,7 @@ from graphflow.graph.checks.check import Interfaces, remarks_on_programs, resolv
 from graphflow.graph.checks.panes import odd_panes
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, StepKind
 from graphflow.interface import EndpointKind, Interface, may_make
-from graphflow.names import Kind, nearest
+from graphflow.names import Kind, nearest, split
 from graphflow.workspace.project import project_root, shown
 
 _OTHER_END: Mapping[EndpointKind, tuple[EndpointKind, str]] = {
@@ -28,6 +28,8 @@ _OTHER_END: Mapping[EndpointKind, tuple[EndpointKind, str]] = {
 _NEEDS_ONE = ("subscription", "client", "action client")
 """Endpoints that do nothing without a counterpart; others may serve clients outside of the graph."""
 _STEPS: Mapping[StepKind, EndpointKind] = {"call": "client", "goal": "action client"}
+_SHOWN = 4
+"""Nodes that a warning names, at most."""
 _KINDS: Mapping[EndpointKind, str] = {
     "publisher": "topic",
     "subscription": "topic",
@@ -36,6 +38,8 @@ _KINDS: Mapping[EndpointKind, str] = {
     "action client": "action",
     "action": "action",
 }
+_COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+"""Types of which a robot obeys the latest message."""
 _EVERYWHERE = ("/clock", "/rosout", "/parameter_events", "/tf", "/tf_static")
 """Topics of tools and of every node."""
 
@@ -63,6 +67,7 @@ def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     ends = [end for node in plan.nodes for end in _ends(node, interfaces)]
     made = [interface.dynamic_names for interface in known]
     classes += (problem for node in plan.nodes for problem in _of_loops(node, interfaces))
+    classes += _of_shared_commands(plan, interfaces)
     found = [*_of_steps(plan, ends), *_of_nodes(ends), *odd_panes(plan.panes, _by_kind(plan, ends))]
     return classes + [problem for name, problem in found if not any(may_make(names, name) for names in made)]
 
@@ -123,6 +128,23 @@ def _of_loops(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
                 way = f"a remap has the node's name first: did you mean {own}: {rule.match}?"
                 yield Problem(rule.place, f"{text}; {way}")
                 return
+
+
+def _of_shared_commands(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
+    """Yield commands under an absolute name, which nodes of one class in several namespaces all publish."""
+    senders: dict[tuple[Place, str], list[str]] = {}
+    for node in plan.nodes:
+        interface = interfaces[node.class_path]
+        assert isinstance(interface, Interface)
+        for end in interface.endpoints:
+            is_command = end.kind == "publisher" and end.type in _COMMANDS and end.name.startswith("/")
+            if is_command and resolver(node).resolve(end.name) == end.name:
+                senders.setdefault((end.place, end.name), []).append(node.name)
+    for (place, name), nodes in senders.items():
+        if len({split(node)[0] for node in nodes}) > 1:
+            who = f"{', '.join(nodes[:_SHOWN])} and others" if len(nodes) > _SHOWN else " and ".join(nodes)
+            text = f"{who} publish {name}, and the robot obeys the latest"
+            yield Problem(place, f"{text}: write {name[1:]!r} without /, so that each namespace has its own")
 
 
 def _of_steps(plan: Plan, ends: list[_End]) -> Iterator[tuple[str, Problem]]:

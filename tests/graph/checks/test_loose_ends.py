@@ -93,6 +93,29 @@ def test_a_publisher_may_have_no_listener_but_not_a_misspelt_one() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("nodes", "type_", "who"),
+    [
+        (["/a/d", "/b/d"], "Twist", "/a/d and /b/d"),
+        (["/a/d", "/b/d", "/c/d", "/d/d", "/e/d"], "TwistStamped", "/a/d, /b/d, /c/d, /d/d and others"),
+        (["/a/d", "/a/e"], "Twist", ""),
+        (["/a/d", "/b/d"], "Point", ""),
+        (["/a/d", "/b/d: {remap: {/cmd_vel: cmd_vel}}"], "Twist", ""),
+    ],
+)
+def test_commands_of_several_robots(nodes: list[str], type_: str, who: str) -> None:
+    """An absolute name gives all of them one topic; other topics may well be shared."""
+    commands = endpoint("publisher", "/cmd_vel", f"geometry_msgs/msg/{type_}")
+    driver = Interface("a:Driver", "driver", CODE, endpoints=(commands, endpoint("publisher", "/map", STRING)))
+    text = "nodes:\n"
+    for node in nodes:
+        name, _, more = node.partition(": ")
+        text += f"  {name}: {{class: a:Driver{', ' + more[1:-1] if more else ''}}}\n"
+    way = "write 'cmd_vel' without /, so that each namespace has its own"
+    expected = f"code.py:1: {who} publish /cmd_vel, and the robot obeys the latest: {way}"
+    assert told(text, {"a:Driver": driver}) == ([expected] if who else [])
+
+
 def test_a_slip_in_a_class() -> None:
     """At the declaration, though no rule was written; names that differ in a number are two names."""
     text = "nodes:\n  /t: {class: a:Talker}\n  /s: {class: a:Slipped}\n"
