@@ -10,12 +10,14 @@ from itertools import pairwise
 
 from graphflow.analysis.bindings import Bindings, bindings_of
 from graphflow.analysis.mistakes.pose_names import PoseNames, pose_names
-from graphflow.analysis.syntax import last_name, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 
 _PERIODS = {"timer", "create_timer", "every", "create_rate"}
 """Functions whose first argument is a period in seconds."""
 _LEAST_MS, _STEP_MS, _MINUTE = 100, 50, 60
 """Whole numbers from 100 in steps of 50 count as milliseconds, unless they are whole minutes."""
+_LEAST_RATE = 10
+"""Whole numbers from here to 100 count as rates in Hz where commands to a robot are published."""
 _ANGLES = ("rpy", "roll", "pitch", "yaw", "theta", "heading", "angle")
 """Keywords of angles in radians."""
 _OF_EULER = ("quaternion_from_euler", "from_rpy", "from_euler")
@@ -56,6 +58,44 @@ def _of_period(call: ast.Call, bindings: Bindings, parents: Sequence[ast.AST]) -
             shown = f"{ast.unparse(value)} is {ms}, and " if bound else ""
             text = f"{shown}a period is in seconds: the first call comes after {ms} s; for {ms} ms write {ms / 1000:g}"
             yield value.lineno, text
+        rates = {_hertz(found) for found in bound or [value]}
+        rate = rates.pop()
+        if rate is not None and not rates and _commands(_callback(call, parents)):
+            shown = f"{ast.unparse(value)} is {rate}, and " if bound else ""
+            way = f"@timer(hz={rate})" if name == "timer" else f"create_timer(1 / {rate}, ...)"
+            text = f"{shown}a period is in seconds: a command comes every {rate} s; for {rate} per second write {way}"
+            yield value.lineno, text
+
+
+def _callback(call: ast.Call, parents: Sequence[ast.AST]) -> ast.AST | None:
+    """Return the function that a timer calls: the decorated one, or the method of the class that is passed."""
+    if parents and isinstance(parents[-1], FunctionNode) and call in parents[-1].decorator_list:
+        return parents[-1]
+    definition = next((node for node in reversed(parents) if isinstance(node, ast.ClassDef)), None)
+    given = [*call.args[1:2], *(keyword.value for keyword in call.keywords if keyword.arg == "callback")]
+    for part in definition.body if definition is not None and given else ():
+        if isinstance(part, FunctionNode) and part.name == last_name(given[0]):
+            return part
+    return None
+
+
+def _commands(function: ast.AST | None) -> bool:
+    """Whether a function fills a Twist, which robots obey for a short time."""
+    for node in nodes_in(function) if function is not None else ():
+        match node:
+            case ast.Call(func=callee) if last_name(callee) == "Twist":
+                return True
+            case ast.Assign(targets=[ast.Attribute(value=ast.Attribute(attr="linear" | "angular"))]):
+                return True
+    return False
+
+
+def _hertz(value: ast.expr | None) -> int | None:
+    """Return a whole number that is a usual rate of commands, or None."""
+    match value:
+        case ast.Constant(value=int(rate)) if not isinstance(rate, bool):
+            return rate if _LEAST_RATE <= rate < _LEAST_MS else None
+    return None
 
 
 def _milliseconds(value: ast.expr | None) -> int | None:

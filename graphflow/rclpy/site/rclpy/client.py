@@ -90,7 +90,9 @@ class Client(ServiceEnd):
         """
         if not isinstance(request, self.srv_type.Request):
             made = f"{self.srv_type.__name__}.Request()"
-            raise TypeError(f"Expected {self.srv_type.Request}, got {classes.what_came(request)}: create a request with {made}")
+            raise TypeError(
+                f"Expected {self.srv_type.Request}, got {classes.what_came(request)}: create a request with {made}"
+            )
         # `_settle` takes the lock, too: an answer may come before the future is stored.
         with self._handle, self._lock:
             future: Future = Future()

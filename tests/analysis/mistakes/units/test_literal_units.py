@@ -50,6 +50,33 @@ def test_numbers_in_another_unit(code: str, told: str) -> None:
     assert told in text
 
 
+DRIVES = "{}\n    def drive(self):\n        msg = Twist()\n        self.pub.publish(msg)\n"
+FILLS = "{}\n    def drive(self):\n        self.msg.linear.x = 1.0\n"
+COUNTS = "{}\n    def drive(self):\n        self.pub.publish(Int32())\n"
+DECORATED = "class A(Node):\n    @timer({})"
+CREATED = "class A(Node):\n    def __init__(self):\n        self.create_timer({}, self.drive)"
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        (DRIVES.format(DECORATED.format(10)), "a command comes every 10 s; for 10 per second write @timer(hz=10)"),
+        (FILLS.format(CREATED.format(20)), "every 20 s; for 20 per second write create_timer(1 / 20, ...)"),
+        ("rate = 10\n" + FILLS.format(CREATED.format("rate")), "rate is 10, and a period is in seconds: a command"),
+        (DRIVES.format(DECORATED.format(5)), ""),
+        (DRIVES.format(DECORATED.format("10.0")), ""),
+        (DRIVES.format(DECORATED.format("hz=10")), ""),
+        (COUNTS.format(DECORATED.format(10)), ""),
+        (COUNTS.format(CREATED.format(10)), ""),
+        (DRIVES.format(CREATED.format(10)).replace("self.drive)", "lambda: None)"), ""),
+    ],
+)
+def test_rates_as_periods(code: str, told: str) -> None:
+    """A robot is told what to do many times a second, and not every ten seconds; other things may be that slow."""
+    texts = [text for _, text in literal_units(ast.parse(code))]
+    assert [told in text for text in texts] == ([True] if told else [])
+
+
 @pytest.mark.parametrize("period", ["60", "300", "3600", "500.0", "0.5", "True", "rate"])
 def test_periods_that_may_be_meant(period: str) -> None:
     """Whole minutes, fractions, small numbers and computed ones are left alone."""

@@ -197,7 +197,9 @@ class ActionClient(Waitable):
             TypeError: Not a goal of the action's type.
         """
         if not isinstance(goal, self._action_type.Goal):
-            raise TypeError(f"Expected {self._action_type.Goal}, got {classes.what_came(goal)}: {self._graphflow_way()}")
+            raise TypeError(
+                f"Expected {self._action_type.Goal}, got {classes.what_came(goal)}: {self._graphflow_way()}"
+            )
         handle = self._graphflow.block_on(self.send_goal_async(goal, **kwargs))
         return handle.get_result() if handle is not None and handle.accepted else None
 
@@ -222,7 +224,9 @@ class ActionClient(Waitable):
         from unique_identifier_msgs import msg
 
         if not isinstance(goal, self._action_type.Goal):
-            raise TypeError(f"Expected {self._action_type.Goal}, got {classes.what_came(goal)}: {self._graphflow_way()}")
+            raise TypeError(
+                f"Expected {self._action_type.Goal}, got {classes.what_came(goal)}: {self._graphflow_way()}"
+            )
         carrier = self._action_type.Impl.SendGoalService
         goal_id = msg.UUID(uuid=list(uuid.uuid4().bytes)) if goal_uuid is None else goal_uuid
         key = bytes(goal_id.uuid)

@@ -87,8 +87,16 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
         TypeError,
         "must be a list of parameters, got Parameter: write set_parameters([Parameter('name', value=...)])",
     ),
-    (lambda _: Trigger(), NotImplementedError, "create a request with Trigger.Request() or a response with Trigger.Response()"),
-    (lambda _: Fibonacci(), NotImplementedError, "create a goal with Fibonacci.Goal() or a result with Fibonacci.Result()"),
+    (
+        lambda _: Trigger(),
+        NotImplementedError,
+        "create a request with Trigger.Request() or a response with Trigger.Response()",
+    ),
+    (
+        lambda _: Fibonacci(),
+        NotImplementedError,
+        "create a goal with Fibonacci.Goal() or a result with Fibonacci.Result()",
+    ),
     (
         lambda n: n.create_client(Trigger, "a").call_async(Trigger.Request),
         TypeError,
