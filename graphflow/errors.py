@@ -124,6 +124,10 @@ class SupervisorError(GraphflowError):
         self.exit_code = exit_code
 
 
+class NoClass(GraphflowError):
+    """The module of a node class exists, and the class does not."""
+
+
 class NoModule(GraphflowError):
     """The module of a node class does not exist.
 

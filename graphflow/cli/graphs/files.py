@@ -172,7 +172,7 @@ def _difference(one: Plan, other: Plan) -> Iterator[str]:
 
 
 def _graph_meant(text: str) -> Path | None:
-    """Find the graph file to check; None if `text` is source. The name of a graph takes precedence over a folder's.
+    """Find the graph file to check; None if `text` is source. A graph's name takes precedence over a folder without /.
 
     Raises:
         UsageFault: It is neither.
@@ -180,8 +180,13 @@ def _graph_meant(text: str) -> Path | None:
     path = Path(text)
     if text.endswith(".py") and not is_launch_file(path):
         return None
+    if path.is_dir() and "/" in text:
+        return None
     try:
-        return find_graph(text)
+        found = find_graph(text)
+        if path.is_dir():
+            output.talk(f"to check the nodes of the folder: graphflow check ./{text}")
+        return found
     except UsageFault:
         if path.is_dir():
             return None

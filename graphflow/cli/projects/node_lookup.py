@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from graphflow.cli import output
 from graphflow.cli.substitutes import no_package
-from graphflow.errors import GraphflowError, NoModule, RunsWhenImported, UsageFault
+from graphflow.errors import GraphflowError, NoClass, NoModule, RunsWhenImported, UsageFault
 from graphflow.graph.model import class_meant
 from graphflow.names import did_you_mean, nearest
 from graphflow.reading import why_no_file
@@ -28,7 +28,7 @@ from graphflow.supervisor.launching.classes import (
 from graphflow.workspace.executables import SLIP, find, project_nodes, with_graphflow
 from graphflow.workspace.installed import installed, package_of, packages_with
 from graphflow.workspace.packages import Workspace, find_workspace
-from graphflow.workspace.project import demos_root, project_root
+from graphflow.workspace.project import demos_root, project_root, shown
 from graphflow.workspace.unfound import owners, why_no_package
 
 FOLDERS = 1000
@@ -142,7 +142,10 @@ def _node_by_name(what: str, root: Path, words: Sequence[str]) -> type[Node]:
     """Find a node by name: in the project, in installed distributions, or in graphflow."""
     own = project_nodes(root)
     if what in own:
-        return import_class(own[what])
+        try:
+            return import_class(own[what])
+        except (NoModule, NoClass) as error:
+            raise GraphflowError(f'{error}; {shown(root / "pyproject.toml")} has {what} = "{own[what]}"') from None
     having = [one for one in packages_with(what) if what in one.nodes]
     if having and not (root / "nodes" / f"{what}.py").is_file():
         if len(having) > 1:

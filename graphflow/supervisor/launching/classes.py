@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from graphflow.analysis.hiding import hidden
 from graphflow.analysis.hyphens import hyphen_hint
 from graphflow.analysis.user_code import place_in
-from graphflow.errors import DeclarationError, GraphflowError, NoModule
+from graphflow.errors import DeclarationError, GraphflowError, NoClass, NoModule
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean, nearest
 from graphflow.reading import found_text
@@ -56,14 +56,15 @@ def import_class(class_path: str) -> type[Node]:
 
     Raises:
         NoModule: There is no such module; the text names the nearest, or the folder that is searched.
-        GraphflowError: The module has no such class, or importing it failed; the text gives the place.
+        NoClass: The module has no such class.
+        GraphflowError: Importing it failed; the text gives the place.
     """
     module_name, _, class_name = class_path.partition(":")
     module = import_module_of(module_name, class_name)
     found = getattr(module, class_name, None)
     if found is None:
         near = did_you_mean(class_name, node_classes(module, imported=True))
-        raise GraphflowError(f"module {module_name} has no class {class_name!r}{near}")
+        raise NoClass(f"module {module_name} has no class {class_name!r}{near}")
     if not (isinstance(found, type) and issubclass(found, Node)):
         raise GraphflowError(f"{class_path} is not a node class: it does not derive from graphflow.Node")
     return found

@@ -232,6 +232,20 @@ def test_the_source_of_rclpy_nodes_is_checked(machine: Machine, tmp_path: Path) 
     assert "there is no file none.py" in machine.look("check", "none.py", cwd=tmp_path, code=2)
 
 
+def test_a_folder_of_a_graphs_name(machine: Machine, tmp_path: Path) -> None:
+    """The graph is checked, and the folder with a slash."""
+    for folder in ("graphs", "own"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "pyproject.toml").touch()
+    (tmp_path / "graphs/own.yaml").write_text("nodes: {/a: {pkg: turtlesim, exec: turtlesim_node}}\n")
+    (tmp_path / "own/a.py").write_text("import rclpy\n")
+    said = machine.look("check", "own", cwd=tmp_path)
+    assert "to check the nodes of the folder: graphflow check ./own\n" in said
+    assert "graphs/own.yaml: 1 node, 0 steps, no problems" in said
+    for path in ("./own", "own/"):
+        assert "no deadlocks visible" in machine.look("check", path, cwd=tmp_path)
+
+
 @pytest.mark.parametrize("text", ["own.robot", "own.robot:Robot", "own/robot.py:Robot"])
 def test_source_is_checked_by_its_file(machine: Machine, tmp_path: Path, text: str) -> None:
     """A module or a class is answered with the file that it is in."""

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from graphflow.cli.projects.node_lookup import find_class
-from graphflow.errors import UsageFault
+from graphflow.errors import GraphflowError, UsageFault
 from graphflow.workspace.executables import EXECUTABLES
 from graphflow.workspace.project import demos_root
 from tests.conftest import PROJECT
@@ -138,6 +138,22 @@ def test_the_project_that_one_is_in(project: Path) -> None:
     for words, node in (([], "left"), (["slid"], "slide")):
         with pytest.raises(UsageFault, match=f"'{project.name}' is the project that you are in: graphflow run {node}"):
             find_class(project.name, words)
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("own_nodes.slide:Slid", "module own_nodes.slide has no class 'Slid'; did you mean 'Slide'"),
+        ("own_nodes.slid:Slide", "own_nodes.slid"),
+    ],
+)
+def test_a_name_of_a_class_that_was_renamed(path: str, told: str, project: Path) -> None:
+    """The error has the line in which the old name still stands."""
+    (project / "pyproject.toml").write_text(
+        f'[project]\nname = "x"\n[project.entry-points."graphflow.nodes"]\na = "{path}"'
+    )
+    with pytest.raises(GraphflowError, match=f'{told}.*; pyproject.toml has a = "{path}"$'):
+        find_class("a", [])
 
 
 @pytest.mark.parametrize(
