@@ -250,11 +250,27 @@ class ParameterMethods:
         response.result = self._graphflow_set_messages(request.parameters)
         return response
 
+    def _graphflow_warn_of_no_effect(self, former: Mapping[str, Parameter]) -> None:
+        """Warn, once for each, of parameters that another process has set, and that only the constructor reads."""
+        parameters = self._graphflow.parameters
+        for name, parameter in list(parameters.values.items()):
+            if name in former and former[name].value != parameter.value and name not in parameters.examined:
+                parameters.examined.add(name)
+                from rclpy.impl.mistakes.read_once import without_effect  # most nodes never need it
+
+                if text := without_effect(type(self), name):
+                    self._graphflow_as_node.get_logger().warning(text)
+
     def _graphflow_set_messages(self, given: Sequence[ParameterMessage]) -> SetParametersResult:
         from rcl_interfaces.msg import SetParametersResult
 
         try:
-            return self.set_parameters_atomically([Parameter.from_parameter_msg(message) for message in given])
+            former = dict(self._graphflow.parameters.values)
+            wanted = [Parameter.from_parameter_msg(message) for message in given]
+            result = self.set_parameters_atomically(wanted)
+            if result.successful:
+                self._graphflow_warn_of_no_effect(former)
+            return result
         except Exception as error:  # a user's check may raise anything: the client gets its text, the log its place
             if place := place_in(error):
                 note = hint(error)

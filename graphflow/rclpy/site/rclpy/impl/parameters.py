@@ -63,6 +63,8 @@ class NodeParameters:
         self.descriptors: dict[str, ParameterDescriptor] = {}
         self.names: set[str] = set()
         """All names that were ever declared, successfully or not."""
+        self.examined: set[str] = set()
+        """Names of those that another process has set, and that were examined for an effect."""
         self.before: list[Callable[[list[Parameter]], Iterable[Parameter]]] = []
         self.checks: list[Callable[[list[Parameter]], SetParametersResult]] = []
         self.after: list[Callable[[list[Parameter]], object]] = []

@@ -1,0 +1,104 @@
+"""Parameters that only a constructor reads."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rcl_interfaces.msg import ParameterValue
+from rcl_interfaces.srv import SetParameters
+
+from rclpy.impl.mistakes.read_once import without_effect
+from rclpy.node import Node
+
+Caplog = pytest.LogCaptureFixture
+
+HEAD = """\
+from rclpy.node import Node
+
+
+class Car(Node):
+    def __init__(self):
+        super().__init__("car")
+        self.declare_parameter("speed", 1.0)
+"""
+KEEP = '        self.speed = self.get_parameter("speed").value\n'
+TICK = "    def tick(self):\n        print(self.speed)\n"
+_numbers = itertools.count()
+
+
+def car_of(folder: Path, code: str) -> type[Node]:
+    name = f"rclpy_read_once_{next(_numbers)}"
+    file = folder / f"{name}.py"
+    file.write_text(code)
+    spec = importlib.util.spec_from_file_location(name, file)
+    assert spec is not None
+    assert spec.loader is not None
+    sys.modules[name] = module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    made: type[Node] = module.Car
+    return made
+
+
+def set_by_others(node: Any, value: float) -> bool:
+    message = ParameterMessage(name="speed", value=ParameterValue(type=3, double_value=value))
+    response = node._graphflow_serve_set(SetParameters.Request(parameters=[message]), SetParameters.Response())
+    return bool(response.results[0].successful)
+
+
+def told(caplog: Caplog) -> list[str]:
+    return [text for text in caplog.messages if "without effect" in text]
+
+
+def test_a_parameter_that_is_set_without_effect(node: Node, caplog: Caplog, tmp_path: Path) -> None:
+    """It is told once, with the line of the read, when another process has changed it."""
+    car: Any = car_of(tmp_path, HEAD + KEEP + TICK)()
+    assert set_by_others(car, 1.0)
+    assert told(caplog) == []
+    assert set_by_others(car, 2.0)
+    assert set_by_others(car, 3.0)
+    [text] = told(caplog)
+    assert text.endswith(
+        ".py:8: 'speed' is set without effect, since only the constructor reads it; read "
+        "self.get_parameter('speed').value where it is used, or follow it with add_on_set_parameters_callback"
+    )
+
+
+@pytest.mark.parametrize(
+    ("code", "line"),
+    [
+        (HEAD + "        self.read()\n    def read(self):\n" + KEEP, 10),
+        (HEAD.replace('        self.declare_parameter("speed", 1.0)\n', "")
+         + '        self.speed = self.declare_parameter("speed", 1.0).value\n', 7),
+        (HEAD + '        self.speed = float(self.get_parameter("speed").value)\n', 8),
+        (HEAD + '        self.create_timer(self.get_parameter("speed").value, self.tick)\n' + TICK, 8),
+    ],
+    ids=["by a helper", "at the declaration", "converted", "passed on"],
+)  # fmt: skip
+def test_other_ways_to_read_it_once(code: str, line: int, tmp_path: Path) -> None:
+    """They are told with their line."""
+    assert f".py:{line}: 'speed' is set without effect" in without_effect(car_of(tmp_path, code), "speed")
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        HEAD + TICK,
+        HEAD + KEEP + TICK + '        self.get_parameter("speed")\n',
+        HEAD + KEEP + "        self.add_on_set_parameters_callback(self.changed)\n" + TICK,
+        HEAD + KEEP + TICK + "        self.get_parameter(self.name)\n",
+        HEAD + "        self.create_timer(1.0, self.read)\n        self.read()\n    def read(self):\n" + KEEP,
+        HEAD + "        self.read()\n    def read(self):\n" + KEEP + "    def tick(self):\n        self.read()\n",
+        HEAD + "        def read():\n    " + KEEP + "        self.create_timer(1.0, read)\n",
+        HEAD + "        while True:\n    " + KEEP,
+    ],
+    ids=["never", "later", "followed", "by a variable", "a callback", "called later", "a function", "a loop"],
+)
+def test_what_may_be_read_again(code: str, tmp_path: Path) -> None:
+    """It is not told, nor is a parameter that nothing reads."""
+    assert without_effect(car_of(tmp_path, code), "speed") == ""
