@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from pathlib import Path
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import NESTED, FunctionNode, last_name, nodes_in, syntax_of, walk
@@ -41,7 +42,7 @@ def without_effect(cls: type, name: str) -> str:
         used = {node.value for node in nodes_in(definition) if isinstance(node, ast.Attribute)}
         reads = [call.lineno for call in known.values() if last_name(call.func) in _READING or call in used]
         if reads and first is None:
-            first = Place(file, min(reads))
+            first = Place(Path(file).name, min(reads))
     if first is None:
         return ""
     read = f"self.get_parameter({name!r}).value"

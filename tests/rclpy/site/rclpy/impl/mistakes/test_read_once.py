@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import itertools
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +33,7 @@ TICK = "    def tick(self):\n        print(self.speed)\n"
 _numbers = itertools.count()
 
 
-def car_of(folder: Path, code: str) -> type[Node]:
+def car_of(folder: Path, code: str) -> Any:
     name = f"rclpy_read_once_{next(_numbers)}"
     file = folder / f"{name}.py"
     file.write_text(code)
@@ -41,8 +42,7 @@ def car_of(folder: Path, code: str) -> type[Node]:
     assert spec.loader is not None
     sys.modules[name] = module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    made: type[Node] = module.Car
-    return made
+    return module.Car
 
 
 def set_by_others(node: Any, value: float) -> bool:
@@ -57,7 +57,8 @@ def told(caplog: Caplog) -> list[str]:
 
 def test_a_parameter_that_is_set_without_effect(node: Node, caplog: Caplog, tmp_path: Path) -> None:
     """It is told once, with the line of the read, when another process has changed it."""
-    car: Any = car_of(tmp_path, HEAD + KEEP + TICK)()
+    make: Callable[[], Node] = car_of(tmp_path, HEAD + KEEP + TICK)
+    car = make()
     assert set_by_others(car, 1.0)
     assert told(caplog) == []
     assert set_by_others(car, 2.0)
