@@ -10,6 +10,7 @@ from rclpy.impl.mistakes.unreached import Unreached
 from rclpy.impl.mistakes.unused import Unused
 from rclpy.impl.watches import orphans, unheard
 from rclpy.impl.watches.late_timers import LateTimers
+from rclpy.impl.watches.slow_readers import SlowReaders
 from rclpy.impl.watches.starvation import HeldUp
 from rclpy.impl.watches.unexecuted import Unexecuted
 from rclpy.impl.watches.unserved import Unserved
@@ -31,6 +32,7 @@ class Watches:
         self.each = (
             self._held_up,
             LateTimers(life, self._held_up),
+            SlowReaders(self._held_up),
             Unused(life),
             Unserved(life, context, is_reported),
             Unexecuted(life),
