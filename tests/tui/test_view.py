@@ -68,7 +68,7 @@ async def test_a_view_of_ones_own(monkeypatch: pytest.MonkeyPatch) -> None:
         assert "battery main" in s.text
         assert view.content == Content("battery", "main", {"unit": "V"})
         await s.until(lambda: view.looks > 2)
-        assert "c charge" in s.text
+        await s.until("c charge")
         await s.press("x")
         await s.until("empty")
         await s.prefix("1")
