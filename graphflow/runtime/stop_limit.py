@@ -246,7 +246,10 @@ class StopLimit:
         self._interrupts = None
 
     def _place(self) -> str:
-        return next(place_of(self._main), "code outside this program")
+        frame = innermost(called_by_loop(stack_of(self._main)))
+        forgotten = "" if frame is None else unawaited.forgotten_in(frame.f_code)
+        why = f", in which {forgotten} is not awaited," if forgotten else ""
+        return next(place_of(self._main), "code outside this program") + why
 
     def _end(self, elapsed: float, due: Step) -> None:
         from graphflow.runtime.mistakes.unended import catching_lines, left_over  # most programs never need it

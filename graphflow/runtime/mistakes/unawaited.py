@@ -8,7 +8,7 @@ import logging
 import sys
 import warnings
 from collections.abc import Coroutine
-from types import FrameType
+from types import CodeType, FrameType
 from typing import Any
 
 from graphflow.analysis.frames import stack_from
@@ -56,6 +56,12 @@ def report(coroutine: Coroutine[object, object, object]) -> None:
         logger.error(
             "a call of %s did nothing, since it was not awaited; if it happens again, its line will be logged", name
         )
+
+
+def forgotten_in(code: CodeType) -> str:
+    """Return the line of a function that was reported as not awaited, as `file:line`; "" if there is none."""
+    lines = {line for _, _, line in code.co_lines() if line is not None}
+    return next((f"{code.co_filename}:{n}" for n in sorted(lines) if f"{code.co_filename}:{n}" in _reported), "")
 
 
 def _origin(coroutine: Any, ended_in: FrameType | None) -> tuple[str, str]:

@@ -47,6 +47,14 @@ def test_the_line_that_lacks_it(caplog: pytest.LogCaptureFixture) -> None:
     assert message.endswith("does nothing, since go is a coroutine function; write await before it, in an async def")
 
 
+def test_the_functions_that_lack_it(caplog: pytest.LogCaptureFixture) -> None:
+    """The line is remembered, for those who ask why the function does not pause."""
+    assert unawaited.forgotten_in(forgets.__code__) == ""
+    forgets()
+    assert unawaited.forgotten_in(forgets.__code__) == f"{__file__}:{inspect.getsourcelines(forgets)[1] + 1}"
+    assert unawaited.forgotten_in(keeps.__code__) == ""
+
+
 def test_a_coroutine_that_was_kept(caplog: pytest.LogCaptureFixture) -> None:
     """Its line is known from the second time on."""
     keeps()
