@@ -19,7 +19,7 @@ from graphflow.msgs.homes import homes, imports
 from graphflow.msgs.registry import KINDS
 from graphflow.names import nearest
 from graphflow.rclpy.hints.frames import PATH, line_of, named, own
-from graphflow.runtime.mistakes.errors.name_errors import MODULES
+from graphflow.runtime.mistakes.errors.name_errors import MODULES, unbound_local
 
 
 def missing_name(error: BaseException, _frames: list[FrameType]) -> str:
@@ -68,6 +68,8 @@ def unknown_name(error: BaseException, frames: list[FrameType]) -> str:
     users = own(frames)
     if not users:
         return ""
+    if isinstance(error, UnboundLocalError) and (way := unbound_local(error, users[-1])):
+        return way
     if isinstance(error, NameError):
         found = re.search(r"(?:name|variable) '(\w+)'", str(error))
         return _unbound(found[1], users[-1]) if found is not None else ""

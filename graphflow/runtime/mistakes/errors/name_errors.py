@@ -8,10 +8,10 @@ import linecache
 import re
 import sys
 from importlib import import_module
-from types import FrameType, ModuleType
+from types import CodeType, FrameType, ModuleType
 from typing import Any
 
-from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.syntax import first_line, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users, parts_of
 
 MODULES = {name: f"import {name}" for name in sys.stdlib_module_names} | {"np": "import numpy as np"}
@@ -29,7 +29,7 @@ def owner_of(error: NameError) -> str:
         return ""
     frame = frames[-1]
     if isinstance(error, UnboundLocalError):
-        return _unbound_local(error, frame)
+        return unbound_local(error, frame)
     if not name:
         return ""
     if "__qualname__" in frame.f_locals and not frame.f_code.co_flags & inspect.CO_OPTIMIZED:
@@ -60,14 +60,32 @@ def _missing_import(name: str) -> str:
     return f"write {MODULES[name]}" if name in MODULES else ""
 
 
-def _unbound_local(error: UnboundLocalError, frame: FrameType) -> str:
-    """Return the correct form of a local variable that is set and read in one statement, as in `count += 1`."""
+def unbound_local(error: UnboundLocalError, frame: FrameType) -> str:
+    """Return the correct form of a variable that is local because the function sets it, as in `count += 1`."""
     found = re.search(r"variable '(\w+)'", str(error))
-    node = frame.f_locals.get("self")
-    if found is None or node is None or inspect.getattr_static(node, found[1], None) is None:
+    if found is None:
         return ""
+    name, node = found[1], frame.f_locals.get("self")
     line = linecache.getline(frame.f_code.co_filename, frame.f_lineno)
-    return f"write self.{found[1]}" if re.match(rf"\s*{found[1]}\s*([-+*/%|&]|//|\*\*)?=", line) else ""
+    is_set_here = re.match(rf"\s*{name}\s*([-+*/%|&]|//|\*\*)?=", line)
+    if node is not None and inspect.getattr_static(node, name, None) is not None:
+        return f"write self.{name}" if is_set_here else ""
+    stores = _stores(frame.f_code, name)
+    if name in frame.f_globals and stores:
+        where = "this line" if stores[0] == frame.f_lineno else f"line {stores[0]}"
+        return f"{where} sets {name}, which makes it local: write global {name} at the top of {frame.f_code.co_name}"
+    return f"only line {stores[0]} sets it, and has not run" if len(stores) == 1 and not is_set_here else ""
+
+
+def _stores(code: CodeType, name: str) -> list[int]:
+    """Return the lines of a function that set a variable, in the order of the source; none without a source."""
+    try:
+        functions = syntax_of(code.co_filename).functions
+    except (OSError, SyntaxError, ValueError):
+        return []
+    own = [item for item in functions if first_line(item) == code.co_firstlineno and item.name == code.co_name]
+    names = [node for item in own for node in nodes_in(item) if isinstance(node, ast.Name) and node.id == name]
+    return sorted(node.lineno for node in names if isinstance(node.ctx, ast.Store))
 
 
 def _bases(frame: FrameType) -> list[ast.expr]:

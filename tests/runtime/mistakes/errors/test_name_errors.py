@@ -64,6 +64,18 @@ TICK = "    @timer(1.0, group=motion)\n    async def tick(self) -> None: ...\n"
             "write self.count",
         ),
         ("class N(Base):\n    count = 0\n    def work(self):\n        n += 1\nN().work()", ""),
+        (
+            "n = 0\nclass N(Base):\n    def work(self):\n        print(n)\n        n += 1\nN().work()",
+            "line 14 sets n, which makes it local: write global n at the top of work",
+        ),
+        (
+            "n = 0\ndef work():\n    n += 1\nwork()",
+            "this line sets n, which makes it local: write global n at the top of work",
+        ),
+        (
+            "def work():\n    if not sys:\n        n = 1\n    print(n)\nwork()".replace("sys", "Base"),
+            "only line 12 sets it, and has not run",
+        ),
         ("class N(Base):\n    count = 0\n    def work(self):\n        print(count)\n        count = 1\nN().work()", ""),
     ],
 )
