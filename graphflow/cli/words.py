@@ -29,6 +29,8 @@ _REPAIRS = (
     (re.compile(r"(?<=\w)'(?=\w)"), "''"),
     (re.compile(r";(?=\s*\w+:\s)"), ","),
     (re.compile(r",\s*\{(?=\w+:\s)"), ", "),
+    (re.compile(r"\}(?=\s*,\s*\w+:\s)"), ""),
+    (re.compile(r"\}\s*,\s*\{(?=\w+:\s)"), ", "),
     (re.compile(r"(\w+:)\s+(\w+:\s+[^\s{}:,]+)"), r"\1 {\2}"),
     (re.compile(r"(?<=\w):(?=[^\s/])"), ": "),
     (re.compile(r"(?<=\w)\s*=\s*(?=[^\s=])"), ": "),
@@ -36,7 +38,7 @@ _REPAIRS = (
     (re.compile(r"(?<=[\w.}\]'\"])\s+(?=\w+:\s)"), ", "),
 )
 """Mistakes in the values of a message, and corrections: `{x: 'it's'}`, `{x: 1; y: 2}`, `{p: {x: 1}, {q: {y: 2}}`,
-`{p: x: 1}`, `{x:1}`, `{x=1}`, `{x: 1,5}`, `{x: 1 y: 2}`."""
+`{p: {x: 1}}, q: {y: 2}`, `{p: {x: 1}}, {q: {y: 2}}`, `{p: x: 1}`, `{x:1}`, `{x=1}`, `{x: 1,5}`, `{x: 1 y: 2}`."""
 _BETWEEN_DOCUMENTS = re.compile(r"^---(?=\s|\Z)", re.MULTILINE)
 """The separator of documents; even a multi-line text cannot contain such a line: YAML 1.2.2, section 9.1.2."""
 _CONTENT = re.compile(r"^\s*[^\s#]", re.MULTILINE)

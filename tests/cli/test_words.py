@@ -242,6 +242,8 @@ def test_messages_in_a_file_of_another_kind(tmp_path: Path) -> None:
         ("data: 'it's me'", "data: 'it''s me'"),
         ("{p: {x: 1.0} q: {y: 2}}", "{p: {x: 1.0}, q: {y: 2}}"),
         ("{p: {x: 1.0}, {q: {y: 2}}", "{p: {x: 1.0}, q: {y: 2}}"),
+        ("{p: {x: 1.0}}, q: {y: 2}", "{p: {x: 1.0}, q: {y: 2}}"),
+        ("{p: {x: 1.0}}, {q: {y: 2}}", "{p: {x: 1.0}, q: {y: 2}}"),
         ("“data: hi”", "data: hi"),
         ("\u2018{data: hi}\u2019", "{data: hi}"),
         ("“data”: hi", '"data": hi'),

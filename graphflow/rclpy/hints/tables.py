@@ -44,7 +44,8 @@ TEXTS: dict[str, str] = {
     r"no running event loop": (
         "callbacks of rclpy run without asyncio: make a timer for a pause, and await futures of rclpy alone"
     ),
-    r"context is invalid|rcl_shutdown already called|[Cc]ontext must be initialized": (
+    r"rcl_shutdown already called": "rclpy was already shut down, as Ctrl-C does: end with rclpy.try_shutdown()",
+    r"context is invalid|[Cc]ontext must be initialized": (
         "rclpy was already shut down, as Ctrl-C does: publish earlier, and end with rclpy.try_shutdown()"
     ),
     r"cannot use Destroyable": (
@@ -122,7 +123,10 @@ CALLS = {
         "the name by keyword"
     ),
     "QoSProfile.__init__": "pass policies by keyword: QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)",
-    "Client.call_async": "write call_async(request).add_done_callback(self.done)",
+    "Client.call_async": (
+        "it takes one request, as in call_async(AddTwoInts.Request(a=1, b=2)); a callback goes to the future that it "
+        "returns: .add_done_callback(self.done)"
+    ),
     "RcutilsLogger": "pass one text: get_logger().info(f'... {value}')",
     "Executor.spin": "add the nodes first: executor.add_node(node), and then executor.spin()",
     "Executor.__init__": "add nodes to it: executor.add_node(node)",

@@ -133,7 +133,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: TIME.from_msg(Twist()), "pass a message's stamp: Time.from_msg(msg.header.stamp)"),
     (
         lambda n: n.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(), print),
-        "add_done_callback(self.done)",
+        "it takes one request, as in call_async(AddTwoInts.Request(a=1, b=2)); a callback goes to the future",
     ),
     (lambda n: TIME(seconds=1).to_msg().to_sec(), "it is a message; write Time.from_msg(...).nanoseconds / 1e9"),
     (lambda n: setattr(TIME(seconds=1).to_msg(), "sec", 0.5), "write sec=0, nanosec=500_000_000"),
