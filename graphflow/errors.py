@@ -17,6 +17,7 @@ GraphflowError
 |-- WrongThread               a thread other than the event loop's uses a node
 |-- TooManyErrors             a node's handlers have failed too often, and the node ends
 |-- SupervisorError           a graph could not be started, or is not running
+|-- NoClass                   the module of a node class has no such class
 |-- NoModule                  the module of a node class does not exist
 |-- UsageFault                the command line is wrong
 |   `-- RunsWhenImported      a module that is imported for its classes runs nodes

@@ -111,9 +111,9 @@ class Reporter:
         return is_in_one or any(title in behind for behind in list(self._behind.values()))
 
     @property
-    def expects_ends(self) -> bool:
-        """Whether deadlocks may have ended, and another look will tell."""
-        return bool(self.foreign or self._doubted)
+    def looks_again_in(self) -> float | None:
+        """Seconds until another look tells whether deadlocks have ended; None if none may have."""
+        return PROBE_AFTER if self._doubted else FORGET_AFTER if self.foreign else None
 
     def forget_victims(self) -> None:
         """Forget which victims were reported, since nothing waits any more."""
@@ -238,8 +238,9 @@ class Reporter:
         for ring, report in list(self.reports.items()):
             unknown = report.processes - processes
             stands = is_ring(report.order, graph, dead) and not report.is_another(graph)
-            if stands or any(entity.zid in unknown for entity in self._process.cache):
+            if stands:
                 self._doubted.pop(ring, None)
+            if stands or any(entity.zid in unknown for entity in self._process.cache):
                 continue
             if report.is_likely and ring <= graph.activities.keys() and not self._is_doubted(ring):
                 continue

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 from graphflow.deadlock.chains import Chains
 from graphflow.deadlock.protocols import ProcessContext
-from graphflow.deadlock.reporting import FORGET_AFTER, PROBE_AFTER, PULL_LIMIT, Reporter, Ring, is_old, lines_of
+from graphflow.deadlock.reporting import PROBE_AFTER, PULL_LIMIT, Reporter, Ring, is_old, lines_of
 from graphflow.deadlock.snapshot import Snapshot
 from graphflow.deadlock.stalls import Stalls
 from graphflow.deadlock.unresponsive import SILENT_AFTER, Unresponsive
@@ -199,8 +199,9 @@ class Search:
         self._last.clear()
         self._reporter.forget_victims()
         self._check_stalls(graph, set())
-        if self._reporter.expects_ends or any(node.tasks for node in self._process.nodes):
-            self._schedule(FORGET_AFTER if self._reporter.expects_ends else TASKS_EVERY)
+        again = self._reporter.looks_again_in
+        if again is not None or any(node.tasks for node in self._process.nodes):
+            self._schedule(TASKS_EVERY if again is None else again)
 
     def _adapt_period(self, waiting: set[tuple[str, Condition]]) -> None:
         """Probe new waits soon, and the same ones at intervals that double."""

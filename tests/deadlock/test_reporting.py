@@ -6,7 +6,7 @@ import asyncio
 from dataclasses import replace
 
 from graphflow.deadlock import reporting
-from graphflow.deadlock.reporting import Reporter, is_old, lines_of
+from graphflow.deadlock.reporting import PROBE_AFTER, Reporter, is_old, lines_of
 from graphflow.machines.waits.reduction import deadlocked
 from graphflow.machines.waits.rings import Deadlock, explained
 from graphflow.machines.waits.wait_graph import FREE, WaitGraph
@@ -55,16 +55,16 @@ async def test_a_loop_seen_at_another_line(graphflow_runner: asyncio.Runner, cap
     reporter.report(replace(deadlock, is_likely=True), graph)
     for _ in range(2):
         reporter.take_back(elsewhere, set(), here)
-        assert reporter.expects_ends
+        assert reporter.looks_again_in == PROBE_AFTER
         await stage.clock.advance(0.2)
         reporter.take_back(graph, deadlocked(graph), here)
-        assert not reporter.expects_ends
+        assert reporter.looks_again_in is None
     assert len(caplog.messages) == len(reporter.reports) == 1
     reporter.take_back(elsewhere, set(), here)
     await stage.clock.advance(0.25)
     reporter.take_back(elsewhere, set(), here)
     assert caplog.messages[1:] == ["the deadlock of timer tick0 of /node and timer tick1 of /node has cleared"]
-    assert not reporter.expects_ends
+    assert reporter.looks_again_in is None
 
 
 async def test_the_same_again_takes_a_line(graphflow_runner: asyncio.Runner, caplog: Caplog) -> None:

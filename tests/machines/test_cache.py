@@ -222,7 +222,7 @@ TURTLESIM = [
         ("/new_turtle", SPAWN, "; of that type there is /spawn"),
         ("/turtle1/set_pem", SPAWN, "; of that type there is /spawn"),
         ("/turtle1/set_pem", ADD, "; did you mean '/turtle1/set_pen', of type turtlesim/srv/SetPen?"),
-        ("/turtle1/set_position", ADD, ""),
+        ("/set_the_position", ADD, ""),
     ],
 )
 def test_services_in_place_of_one_that_nobody_offers(name: str, type_name: str, told: str) -> None:
