@@ -191,13 +191,14 @@ def test_stubs_where_there_is_nothing_to_describe(
 
 @slow
 @pytest.mark.real
+@pytest.mark.timeout(300)
 def test_a_type_checker_finds_the_stubs(mylab: Path) -> None:
     """mypy finds a misspelt field of the project's own message, and nothing else to complain about."""
     assert stubs() == exits.OK
     wrong = mylab / "mylab" / "wrong.py"
     wrong.write_text("from graphflow.msgs.mylab_interfaces.msg import Greeting\n\nGreeting(text='x', cuont=1)\n")
     done = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "mylab"], capture_output=True, text=True, timeout=100, check=False
+        [sys.executable, "-m", "mypy", "--strict", "mylab"], capture_output=True, text=True, timeout=290, check=False
     )
     assert done.stdout.splitlines()[0].startswith("mylab/wrong.py:3: error: Unexpected keyword argument"), done.stdout
     assert "Found 1 error" in done.stdout
