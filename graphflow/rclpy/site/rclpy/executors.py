@@ -144,7 +144,9 @@ class Executor(AbstractContextManager["Executor"]):
         # First, since setting `node.executor` calls this method again, which ends there.
         spinning.nodes[node] = None
         node.executor = self
-        internals_of(node).times_added += 1
+        inner = internals_of(node)
+        inner.times_added += 1
+        inner.was_spun = inner.was_spun or spinning.turns > 0
         spinning.wake.set()
         return True
 

@@ -47,6 +47,8 @@ class Internals:
         self.begun = time.monotonic()
         self.times_added = 0
         """The number of times that the node was added to an executor."""
+        self.was_spun = False
+        """Whether one of those executors has looked for work since."""
         self.group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self.rate_group: CallbackGroup | None = None
         self.logger = get_logger(node.full_name[1:].replace("/", "."))

@@ -205,6 +205,9 @@ class Spinning:
             ValueError: Another thread waits with the same arguments, which ROS 2 refuses; with others it may.
         """
         # Counted before anything can raise: watches see by it that somebody spins.
+        if not self.turns:
+            for node in self.nodes:
+                internals_of(node).was_spun = True
         self.turns += 1
         asked = (timeout, nodes, condition)
         # In rclpy the threads share one generator as long as their arguments are equal. Here only its refusal is kept.

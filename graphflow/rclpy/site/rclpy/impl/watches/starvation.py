@@ -180,23 +180,20 @@ class HeldUp:
     def _leaves(self, node: Node) -> None:
         """Report a node that leaves without having been spun, unless reported before, or the program is failing."""
         is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
-        if internals_of(node).times_added or is_failing or full_name(node) in self._known:
+        if internals_of(node).was_spun or is_failing or full_name(node) in self._known:
             return
         kept = [
             label_with_line(e) for e in entities_of(node) if _called(e) and not isinstance(e, (Client, ActionClient))
         ]
         if not kept:
             return
-        place = _shut_down_in()
+        place, spin = _shut_down_in(), "executor.spin()" if internals_of(node).times_added else "rclpy.spin(node)"
         if place is None:
-            text = "%s ends and was never spun, so %s could not be called: rclpy.spin(node) calls callbacks"
-            logger.warning(text, full_name(node), _joined(kept))
+            text = "%s ends and was never spun, so %s could not be called: %s calls callbacks"
+            logger.warning(text, full_name(node), _joined(kept), spin)
         else:
-            text = (
-                "rclpy is shut down in %s before %s was spun, so %s could not be called: "
-                "call rclpy.spin(node) before it"
-            )
-            logger.warning(text, place, full_name(node), _joined(kept))
+            text = "rclpy is shut down in %s before %s was spun, so %s could not be called: call %s before it"
+            logger.warning(text, place, full_name(node), _joined(kept), spin)
 
 
 def _shut_down_in() -> Place | None:

@@ -266,6 +266,22 @@ def test_a_node_that_is_spun_now_and_then(node: Node, caplog: Caplog) -> None:
     assert told(caplog) == []
 
 
+@pytest.mark.parametrize("is_spun", [False, True])
+def test_an_executor_that_nobody_spins(network: Any, caplog: Caplog, is_spun: bool) -> None:
+    """Its nodes are told when they end, with the call that is missing; not if it has looked for work once."""
+    rclpy.init()
+    executor, nodes = MultiThreadedExecutor(2), [Node("first"), Node("second")]
+    for node in nodes:
+        node.create_timer(1.0, lambda: None)
+        executor.add_node(node)
+        if is_spun:
+            executor.spin_once(0)
+    executor.shutdown()
+    rclpy.shutdown()
+    found = [text for text in told(caplog) if "before /" in text]
+    assert [text.endswith(": call executor.spin() before it") for text in found] == ([] if is_spun else [True, True])
+
+
 def test_a_node_that_ends_without_having_been_spun(node: Node, caplog: Caplog) -> None:
     """Told with its callbacks, wherever they stand; not of one that has none, or was spun, or ends in an error."""
 
