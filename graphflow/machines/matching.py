@@ -63,7 +63,7 @@ def verdict(own: Entity, other: Entity, profile: str = PROFILES[0], where: str =
             f"{own.type}: {remedy}",
         )
     if other.hash != own.hash:
-        remedy = advice(other, profile) or "use the same definition file on both sides"
+        remedy = advice(other, profile) or "use the same definition file on both sides, and start the older one again"
         return Verdict(
             False,
             complaint=f"{own.name}: nothing passes between {who} and {what}: they have different definitions of "

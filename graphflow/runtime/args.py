@@ -231,10 +231,20 @@ def _option(result: RosArgs, option: str, value: str) -> None:
             raise GraphflowError(f"-p {value!r}: the value is missing; write it after :=, without a space")
         if re.search(r"\s[\w.]+:=", text):
             raise GraphflowError(f"-p {value!r}: write one -p each: {' '.join(f'-p {one}' for one in value.split())}")
-        from graphflow.markup.source import parse_value
-
         node, colon, name = target.rpartition(":")
-        result.params.append((node if colon else None, name, parse_value(text), "command line"))
+        result.params.append((node if colon else None, name, _value(text, value), "command line"))
+
+
+def _value(text: str, rule: str) -> object:
+    from graphflow.markup.source import parse_value
+
+    try:
+        return parse_value(text)
+    except GraphflowError:
+        if any(text.count(begin) > text.count(end) for begin, end in ("[]", "{}")):
+            way = "put quotes around a rule with blanks in it, as in -p 'places:=[1.0, 2.0]'"
+            raise GraphflowError(f"-p {rule!r}: the bracket is not closed; {way}") from None
+        raise
 
 
 def _remap(result: RosArgs, text: str) -> None:

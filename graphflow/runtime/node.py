@@ -494,3 +494,6 @@ class Node(AttributeHints):
     async def wait_ended(self) -> None:
         """Wait until the node ends by `shutdown` or fails; raises the error it failed with."""
         await self._core.wait_ended()
+
+
+unrun.watch()

@@ -63,7 +63,7 @@ def test_another_definition_is_reported() -> None:
         False,
         complaint="/t: nothing passes between the publisher of /there and the subscription here: they have different "
         "definitions of std_msgs/msg/String (RIHS01_00112233 there, RIHS01_df668c74 here): use the same definition "
-        "file on both sides",
+        "file on both sides, and start the older one again",
     )
 
 

@@ -24,6 +24,7 @@ from graphflow.analysis.mistakes.values.ineffective import ineffective
 from graphflow.analysis.mistakes.values.lost_values import lost_values
 from graphflow.analysis.mistakes.values.never_exact import never_exact
 from graphflow.analysis.mistakes.values.reused_objects import reused_objects
+from graphflow.analysis.mistakes.values.unformatted import unformatted
 from graphflow.analysis.uncalled import uncalled_methods
 
 Found: TypeAlias = Iterable[tuple[int, str]]
@@ -39,6 +40,7 @@ IN_CODE: Final[tuple[Callable[[ast.AST], Found], ...]] = (
     busy_loops,
     lone_nanoseconds,
     single_transforms,
+    unformatted,
 )
 """Checks of any code, such as one class."""
 

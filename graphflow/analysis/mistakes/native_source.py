@@ -6,6 +6,7 @@ import ast
 from collections.abc import Callable, Collection, Iterator
 from typing import Final
 
+from graphflow.analysis.mistakes.calls.background_work import background_work
 from graphflow.analysis.mistakes.calls.blocking_async import blocking_async
 from graphflow.analysis.mistakes.calls.misgiven import misgiven
 from graphflow.analysis.mistakes.calls.misplaced import misplaced
@@ -22,6 +23,7 @@ _IN_CLASSES: Final[tuple[Callable[[ast.ClassDef], Found], ...]] = (
     added_arrays,
     caught_in_vain,
     blocking_async,
+    background_work,
 )
 """Checks of native nodes alone."""
 

@@ -57,6 +57,8 @@ def _at_exit() -> None:
     error = getattr(sys, "last_value", None)
     if isinstance(error, AttributeError) and error.name is not None and (better := better_text(error)):
         sys.stderr.write(f"{place_in(error)}: {better}\n")  # Python has printed the error itself
+    if isinstance(error, ModuleNotFoundError) and error.name and _file is not None:
+        sys.stderr.write(_as_module(Path(_file).resolve(), error.name))
     if _file is not None and not hasattr(sys, "last_value"):  # the program ended normally, without an error
         report(Path(_file))
 
@@ -66,6 +68,15 @@ def report(file: Path) -> None:
     if not _has_run:
         ran()
         sys.stderr.write(advice(file, _classes, _made))
+
+
+def _as_module(file: Path, missing: str) -> str:
+    """Return the command that runs a file of a package, if it lacks that package; "" if it lacks another."""
+    package = file.parent.name
+    if missing.partition(".")[0] != package:
+        return ""
+    run = f"graphflow run {package}.{file.stem}, in {file.parents[1]}"
+    return f"to run a file of {package}, which imports {missing}: {run}\n"
 
 
 def advice(file: Path, classes: list[str], made: Collection[str] = ()) -> str:

@@ -45,6 +45,18 @@ def test_a_main_that_nothing_calls(tmp_path: Path, made: str) -> None:
     assert done.stderr == told
 
 
+@pytest.mark.parametrize(("missing", "is_told"), [("arms.geometry", True), ("geometry", False)])
+def test_a_file_of_a_package(tmp_path: Path, missing: str, is_told: bool) -> None:
+    """It is run as a module, where it imports others of its package."""
+    (tmp_path / "arms").mkdir()
+    (tmp_path / "arms" / "lift.py").write_text(f"from graphflow import Node\nfrom {missing} import clamp\n")
+    program = [sys.executable, "arms/lift.py"]
+    done = subprocess.run(program, cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
+    told = f"to run a file of arms, which imports arms: graphflow run arms.lift, in {tmp_path.resolve()}\n"
+    assert done.stderr.endswith(told) is is_told
+    assert done.stderr.count("graphflow run") == is_told
+
+
 def test_an_error_is_enough(tmp_path: Path) -> None:
     """A program that failed gets no remark."""
     (tmp_path / "talk.py").write_text(f"{TALK}1 / 0\n")

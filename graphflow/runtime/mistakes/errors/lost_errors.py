@@ -36,7 +36,8 @@ class _LostErrors:
         if not isinstance(error, BaseException) or not (is_lost or "handle" in context):
             loop.default_exception_handler(context)
             return
-        if isinstance(error, ClosedError):  # its node has stopped in the meantime
+        # Its node has stopped in the meantime, or somebody has cancelled it on purpose.
+        if isinstance(error, (ClosedError, asyncio.CancelledError)):
             logger.debug("lost: %s", error)
             return
         coroutine = future.get_coro() if isinstance(future, asyncio.Task) else None

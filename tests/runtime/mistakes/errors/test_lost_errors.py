@@ -33,6 +33,8 @@ async def test_they_are_told(graphflow_runner: asyncio.Runner, caplog: pytest.Lo
     try:
         await lose(ValueError("boom"), 12)
         await lose(ClosedError("the node has stopped"))
+        cancelled = {"exception": asyncio.CancelledError(), "future": loop.create_future()}
+        loop.call_exception_handler({"message": "_GatheringFuture exception was never retrieved", **cancelled})
         loop.call_exception_handler({"message": "something else"})
         loop.call_exception_handler(
             {"message": "a callback failed", "exception": ValueError("boom"), "future": loop.create_future()}
