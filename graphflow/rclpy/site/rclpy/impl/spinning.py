@@ -195,6 +195,12 @@ class Spinning:
 
     # what is next
 
+    def _count_turn(self) -> None:
+        """Count a request before anything can raise: watches see by it that somebody spins."""
+        for node in () if self.turns else self.nodes:
+            internals_of(node).was_spun = True
+        self.turns += 1
+
     def next(
         self, timeout: float | None, nodes: Iterable[Node] | None, condition: Callable[[], bool]
     ) -> tuple[Run, Entity | None, Node | None]:
@@ -204,11 +210,7 @@ class Spinning:
             ShutdownException, ExternalShutdownException, ConditionReachedException, TimeoutException: See there.
             ValueError: Another thread waits with the same arguments, which ROS 2 refuses; with others it may.
         """
-        # Counted before anything can raise: watches see by it that somebody spins.
-        if not self.turns:
-            for node in self.nodes:
-                internals_of(node).was_spun = True
-        self.turns += 1
+        self._count_turn()
         asked = (timeout, nodes, condition)
         # In rclpy the threads share one generator as long as their arguments are equal. Here only its refusal is kept.
         if asked in self._asking:
