@@ -50,6 +50,8 @@ class EndpointInfo:
     place: Place
     group: str = ""
     """The group of a client's responses; empty for none."""
+    is_made: bool = False
+    """Whether a method creates it, perhaps only in some cases."""
 
 
 @dataclass(frozen=True, slots=True)

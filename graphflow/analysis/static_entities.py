@@ -106,7 +106,7 @@ class _Made:
             self.params.append(_parameter(call, name, place))
         else:
             type_name = _type(_argument(call, 0, "type_"), function)
-            self.endpoints.append(EndpointInfo(maker.kind, name, type_name, handler or attribute, place))
+            self.endpoints.append(EndpointInfo(maker.kind, name, type_name, handler or attribute, place, is_made=True))
 
     def _read_handler(self, cls: type, call: ast.Call, kind: HandlerKind, at: int) -> str:
         """Read the handler that a call passes; return its name, which is empty if it is no method of the class."""

@@ -16,6 +16,7 @@ from graphflow.interface import (
     COMMON_PARAMETERS,
     COMMON_SERVICES,
     LIFECYCLE_SERVICES,
+    EndpointInfo,
     EndpointKind,
     GroupInfo,
     Interface,
@@ -257,24 +258,34 @@ def resolver(node: PlannedNode) -> Resolver:
 
 def _check_types(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
     """Check that each name has one type; endpoints of different types never communicate."""
-    first: dict[tuple[str, str], tuple[str, str]] = {}
+    first: dict[tuple[Kind, str], tuple[list[str], str]] = {}
+    """By name: the types that its first node may give it, and that node."""
     for node in plan.nodes:
         interface = interfaces.get(node.class_path)
         if not isinstance(interface, Interface):
             continue
         names = resolver(node)
-        for endpoint in interface.endpoints:
-            kind: Kind = "topic" if endpoint.kind in ("publisher", "subscription") else "service"
-            name = names.resolve(endpoint.name, kind)
-            if not endpoint.type:  # unknown from the source
-                continue
-            type_, owner = first.setdefault((kind, name), (endpoint.type, node.name))
-            if type_ != endpoint.type:
+        typed = [(_key(end, names), end) for end in interface.endpoints if end.type]  # else unknown from the source
+        own: dict[tuple[Kind, str], list[str]] = {}
+        for key, endpoint in typed:
+            own.setdefault(key, []).append(endpoint.type)
+        for (kind, name), endpoint in typed:
+            types, owner = first.setdefault((kind, name), (own[kind, name], node.name))
+            if owner == node.name:  # what a method makes may take the place of what the class declares
+                clashes = endpoint.type != types[0] and not endpoint.is_made
+            else:
+                clashes = {*types}.isdisjoint(own[kind, name])
+            if clashes:
                 rule = next((r for r in node.remaps if names.full(r.replacement) == name), None)
                 yield Problem(
                     rule.place if rule else node.class_place,
-                    f"{kind} {name} is of type {type_} for {owner}, but {endpoint.type} for {node.name}",
+                    f"{kind} {name} is of type {types[0]} for {owner}, but {endpoint.type} for {node.name}",
                 )
+
+
+def _key(endpoint: EndpointInfo, names: Resolver) -> tuple[Kind, str]:
+    kind: Kind = "topic" if endpoint.kind in ("publisher", "subscription") else "service"
+    return kind, names.resolve(endpoint.name, kind)
 
 
 def offered(plan: Plan, interfaces: Interfaces, kind: EndpointKind) -> dict[str, str]:

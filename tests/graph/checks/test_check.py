@@ -137,6 +137,19 @@ def test_parameters_whose_names_are_made() -> None:
     assert [problem.split(";")[0] for problem in problems(text, made)] == [told]
 
 
+def test_what_a_method_makes_instead() -> None:
+    """A node may replace what its class declares; others need one of the two types."""
+    twist, stamped = (f"geometry_msgs/msg/{name}" for name in ("Twist", "TwistStamped"))
+    made = replace(endpoint("publisher", "cmd_vel", stamped), is_made=True)
+    teleop = Interface("a.b:Teleop", "teleop", NOWHERE, endpoints=(endpoint("publisher", "cmd_vel", twist), made))
+    known: dict[str, Interface | Problem] = {"a.b:Teleop": teleop}
+    for type_, clashes in ((twist, False), (stamped, False), ("std_msgs/msg/String", True)):
+        known["a.b:Base"] = Interface("a.b:Base", "b", NOWHERE, "", (endpoint("subscription", "cmd_vel", type_),))
+        found = problems("nodes: {/t: {class: 'a.b:Teleop'}, /b: {class: 'a.b:Base'}}\n", known)
+        told = f"1:48: topic /cmd_vel is of type {twist} for /t, but {type_} for /b"
+        assert found == ([told] if clashes else [])
+
+
 def test_keys_of_a_node_below_params() -> None:
     """Each is reported once, however many entries it has."""
     hint = "remap is a key of the node: indent it as params: is"
