@@ -185,12 +185,18 @@ def missed(arguments: Sequence[str]) -> str:
             rest = " ".join(arguments[place + 1 :])
             way = option if option == "--ros-args" else f"--ros-args {option}"
             return f"{argument!r} means nothing to ROS, nor does the rest{f' ({rest})' if rest else ''}; write {way}"
+        elif not in_ros and argument == "--params-file" and _is_yaml(after := next(iter(arguments[place + 1 :]), "")):
+            return f"{argument!r} means nothing to ROS before --ros-args; write --ros-args {argument} {after}"
         elif not in_ros and ":=" in argument:
             before = arguments[place - 1] if place else ""
             is_whole = before in _VALUED and not argument.startswith("___")
             way = f"; write --ros-args {before} {argument}" if is_whole else meant(argument)
             return f"{argument!r} means nothing to ROS before --ros-args{way}"
     return ""
+
+
+def _is_yaml(file: str) -> bool:
+    return file.endswith((".yaml", ".yml"))
 
 
 def _slip(argument: str) -> str:

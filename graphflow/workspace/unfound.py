@@ -88,9 +88,14 @@ def outer_workspace(workspace: Workspace) -> Workspace | None:
     return None if above == workspace.root else workspace_around(above)
 
 
-def no_packages(workspace: Workspace) -> list[str]:
-    """Return the faults of folders that are meant as packages and are none."""
-    return [fault for found in folders(_source(workspace)) if _is_intended(found) and (fault := _lack(found))]
+def no_packages(workspace: Workspace, *, are_few: bool = False) -> list[str]:
+    """Return the faults of folders that are meant as packages and are none.
+
+    Args:
+        are_few: Whether a `setup.py` alone counts, too.
+    """
+    meant = [one for one in folders(_source(workspace)) if _is_intended(one) or (are_few and one.package is None)]
+    return [fault for found in meant if (fault := _lack(found))]
 
 
 def _is_package(folder: Path) -> bool:

@@ -157,7 +157,11 @@ def test_a_bare_rule_where_ros_knows_none() -> None:
             "'-params-file' means nothing to ROS, nor does the rest (x.yaml); write --ros-args --params-file",
         ),
         ("--ros-args -p a:=1 -r b:=c", ""),
-        ("-p 8080 -r --params-file x.yaml --log-level debug", ""),
+        (
+            "--params-file x.yaml",
+            "'--params-file' means nothing to ROS before --ros-args; write --ros-args --params-file x.yaml",
+        ),
+        ("-p 8080 -r --params-file x.json --log-level debug", ""),
     ],
 )
 def test_words_that_miss_ros(line: str, text: str) -> None:

@@ -25,6 +25,7 @@ from graphflow.runtime.part import Host
 from graphflow.transport.base import LargeSender, Payload, Sender
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
+from graphflow.wire.schema import STRINGS
 from graphflow.wire.shared_memory import ring_key
 
 M = TypeVar("M", bound=Message)
@@ -293,8 +294,14 @@ class TopicPublisher(Endpoint, Generic[M]):
     def _with_name(self, value: object) -> str:
         """Return a hint for a value published in place of a message with a single field."""
         fields = self.type.SCHEMA.fields
-        is_one = len(fields) == 1 and isinstance(value, (str, int, float))
-        return f"; write {self.type.__name__}({fields[0].name}={value!r})" if is_one else ""
+        if len(fields) != 1 or not isinstance(value, (str, int, float)):
+            return ""
+        name, shown = fields[0].name, repr(value)
+        try:
+            self.type(**{name: value}).to_bytes()
+        except EncodeError:
+            shown = repr(str(value)) if fields[0].type.base in STRINGS else "..."
+        return f"; write {self.type.__name__}({name}={shown})"
 
     def _send(self, payload: Any) -> None:
         self._order.number += 1

@@ -22,15 +22,13 @@ def running_here(*, everything: bool = False) -> list[GraphRun]:
     """
     runs = rundir.running()
     if not runs:
-        death = recent_death()
-        why = f"; the latest, {death}" if death else ""
-        raise _none("no graph is running", f"{why}; start one with: graphflow up GRAPH.yaml")
+        raise _none("no graph is running", f"{_latest()}; start one with: graphflow up GRAPH.yaml")
     here = [run for run in runs if everything or run.is_here]
     if not here:
         listing = ", ".join(f"{r.graph} (domain {r.domain})" for r in runs)
         where = f"domain {domain_id()}" if all(r.domain != domain_id() for r in runs) else rendezvous_endpoint()
         elsewhere = f"; elsewhere there is {listing}: name it with --graph {runs[0].graph}"
-        raise _none(f"no graph is running in {where}", elsewhere)
+        raise _none(f"no graph is running in {where}", _latest() + elsewhere)
     return here
 
 
@@ -57,6 +55,12 @@ def choose(name: str | None) -> GraphRun:
             exit_code=2,
         )
     return runs[0]
+
+
+def _latest() -> str:
+    """Return how the newest graph of this domain was killed, if that was a short while ago, to append to an error."""
+    death = recent_death()
+    return f"; the latest, {death}" if death else ""
 
 
 def _none(what: str, otherwise: str) -> SupervisorError:

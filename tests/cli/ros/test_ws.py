@@ -93,8 +93,7 @@ def test_a_workspace_in_a_workspace(machine: Machine, workspace: Path) -> None:
 def test_no_workspace(machine: Machine, tmp_path: Path) -> None:
     """The error says where a workspace would be, or what a folder lacks to be a package."""
     assert "go to a folder that has packages in src/" in machine.look("ws", cwd=tmp_path, code=1)
-    (tmp_path / "src/dark/resource").mkdir(parents=True)
-    (tmp_path / "src/dark/resource/dark").touch()
+    (tmp_path / "src/dark").mkdir(parents=True)
     (tmp_path / "src/dark/setup.py").touch()
     assert "error: src/dark has setup.py but no package.xml" in machine.look("ws", cwd=tmp_path, code=1)
 

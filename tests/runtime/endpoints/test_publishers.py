@@ -28,6 +28,7 @@ from tests.runtime.cast import Speaker
     [
         (Int32(), r"/chatter carries std_msgs/msg/String, not std_msgs\.msg\.Int32"),
         ("hello", r"/chatter carries std_msgs/msg/String, not 'hello'; write String\(data='hello'\)$"),
+        (5, r"/chatter carries std_msgs/msg/String, not 5; write String\(data='5'\)$"),
         (None, "/chatter carries std_msgs/msg/String, not None"),
     ],
 )

@@ -52,12 +52,14 @@ def test_graphs_elsewhere(domain: str, endpoint: str, where: str, monkeypatch: p
     directory = start("chase")
     monkeypatch.setenv("GRAPHFLOW_DOMAIN", domain)
     monkeypatch.setenv("GRAPHFLOW_RENDEZVOUS", endpoint)
+    elsewhere = "elsewhere there is chase (domain 7): name it with --graph chase"
     with pytest.raises(SupervisorError) as caught:
         choose(None)
-    assert str(caught.value) == (
-        f"no graph is running in {where}; elsewhere there is chase (domain 7): name it with --graph chase"
-    )
+    assert str(caught.value) == f"no graph is running in {where}; {elsewhere}"
     assert caught.value.exit_code == 3
+    monkeypatch.setattr("graphflow.supervisor.control.choosing.recent_death", lambda: "lab: it was killed")
+    with pytest.raises(SupervisorError, match=f"; the latest, lab: it was killed; {elsewhere}$"):
+        choose(None)
     assert choose("chase").graph == "chase"
     directory.release()
 
