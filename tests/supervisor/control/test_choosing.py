@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from pathlib import Path
 
 import pytest
@@ -58,7 +59,7 @@ def test_graphs_elsewhere(domain: str, endpoint: str, where: str, monkeypatch: p
     assert str(caught.value) == f"no graph is running in {where}; {elsewhere}"
     assert caught.value.exit_code == 3
     monkeypatch.setattr("graphflow.supervisor.control.choosing.recent_death", lambda: "lab: it was killed")
-    with pytest.raises(SupervisorError, match=f"; the latest, lab: it was killed; {elsewhere}$"):
+    with pytest.raises(SupervisorError, match=re.escape(f"; the latest, lab: it was killed; {elsewhere}")):
         choose(None)
     assert choose("chase").graph == "chase"
     directory.release()
