@@ -31,7 +31,13 @@ from graphflow.runtime.mistakes.source.stray_attributes import stray_attributes
 from graphflow.runtime.mistakes.source.uncancelled import uncancelled
 from graphflow.runtime.mistakes.source.unrepeated import unrepeated
 from graphflow.runtime.mistakes.source.without_super import without_super
-from graphflow.runtime.mistakes.source.wrong_fields import flags_of, resolved, whole_messages, wrong_fields
+from graphflow.runtime.mistakes.source.wrong_fields import (
+    flags_of,
+    messages_kept,
+    resolved,
+    whole_messages,
+    wrong_fields,
+)
 from graphflow.runtime.mistakes.source.wrong_units import wrong_units
 
 logger = logging.getLogger("graphflow")
@@ -77,11 +83,11 @@ def _slips(cls: type) -> Iterator[str]:
         yield from stray_attributes(cls, definition, file, mentioned)
         yield from _replaced(cls, definition, file, space)
         yield from _changed_in_place(cls, definition, file)
-        flags = flags_of(cls, definition)
+        flags, kept = flags_of(cls, definition), messages_kept(definition, space)
         for method in definition.body:
             if isinstance(method, FunctionNode):
                 handler = declared.handlers(parent).get(method.name)
-                yield from wrong_fields(method, handler, file, space)
+                yield from wrong_fields(method, handler, file, space, kept)
                 yield from whole_messages(flags, method, handler, file, space)
         module = syntax_of(file).module
         subscribed = [name for name, handler in declared.handlers(parent).items() if handler.kind == "subscription"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
@@ -14,15 +14,38 @@ from graphflow.msgs.base import Message, no_field
 from graphflow.runtime.declarations.handlers import Handler
 
 
-def wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space: dict[str, object]) -> Iterator[str]:
+def messages_kept(definition: ast.ClassDef, space: dict[str, object]) -> dict[str, type[Message]]:
+    """Return the message classes of attributes that a class sets to nothing else, as `self.command` of `Twist()`."""
+    found: dict[str, set[type[Message] | None]] = {}
+    for node in nodes_in(definition):
+        match node:
+            case ast.Assign(targets=[ast.Attribute() as target], value=value) if is_own(target):
+                if not (isinstance(value, ast.Constant) and value.value is None):
+                    found.setdefault(ast.unparse(target), set()).add(_type_made(value, space))
+    stores = Counter(ast.unparse(n) for n in nodes_in(definition) if is_own(n) and isinstance(n.ctx, ast.Store))
+    plain = Counter(
+        ast.unparse(n.targets[0]) for n in nodes_in(definition) if isinstance(n, ast.Assign) and len(n.targets) == 1
+    )
+    made = ((name, next(iter(types))) for name, types in found.items() if len(types) == 1)
+    return {name: type_ for name, type_ in made if type_ is not None and stores[name] == plain[name]}
+
+
+def wrong_fields(
+    method: FunctionNode,
+    handler: Handler | None,
+    file: str,
+    space: dict[str, object],
+    kept: Mapping[str, type[Message]] = MappingProxyType({}),
+) -> Iterator[str]:
     """Find fields of messages that their type does not have, and literals that do not fit them.
 
     Those of a service handler whose arguments are named in the wrong order have one answer.
 
     Args:
         handler: What the class declares the method to be.
+        kept: The message classes of attributes, as `messages_kept` returns them.
     """
-    found = list(_wrong_fields(method, handler, file, space))
+    found = list(_wrong_fields(method, handler, file, space, kept))
     names = [argument.arg for argument in method.args.args]
     if found and handler is not None and handler.kind == "service" and names[1:] == ["response", "request"]:
         way = f"write def {method.name}({names[0]}, request, response)"
@@ -60,7 +83,13 @@ def whole_messages(
                         yield f"{Place(file, node.lineno)}: {text}; write self.{flag} = {name}.{bools[0]}"
 
 
-def _wrong_fields(method: FunctionNode, handler: Handler | None, file: str, space: dict[str, object]) -> Iterator[str]:
+def _wrong_fields(
+    method: FunctionNode,
+    handler: Handler | None,
+    file: str,
+    space: dict[str, object],
+    kept: Mapping[str, type[Message]],
+) -> Iterator[str]:
     bound = _received(method, handler, space)
     times = _meanings(method, bound, space)
     # A name with several meanings, or bound by a loop, is treated as unknown.
@@ -68,7 +97,7 @@ def _wrong_fields(method: FunctionNode, handler: Handler | None, file: str, spac
         name: type_
         for name, types in bound.items()
         if len(types) == 1 and not times[name] and (type_ := next(iter(types))) is not None
-    }
+    } | dict(kept)
     for node, parents in walk(method):
         match node:
             case ast.Attribute(ctx=ast.Load(), attr=field) if type_ := _type_of(node.value, made):
@@ -146,9 +175,11 @@ def _received(
 
 
 def _type_of(expression: ast.expr, made: Mapping[str, type[Message]]) -> type[Message] | None:
-    """Return the message class of a name, or of a field that is a message itself."""
+    """Return the message class of a name, of an attribute of the node, or of a field that is a message itself."""
     if isinstance(expression, ast.Name):
         return made.get(expression.id)
+    if is_own(expression):
+        return made.get(ast.unparse(expression))
     if not isinstance(expression, ast.Attribute) or (type_ := _type_of(expression.value, made)) is None:
         return None
     if expression.attr not in {field.name for field in type_.SCHEMA.fields}:

@@ -100,6 +100,29 @@ def test_attributes_of_other_objects(tmp_path: Path, body: str) -> None:
     assert _told(tmp_path, body) == []
 
 
+KEPT = "def __init__(self):\n    super().__init__('robot')\n    self.command = Twist()\nasync def on_start(self):\n    "
+
+
+@pytest.mark.parametrize(
+    ("body", "told"),
+    [
+        (KEPT + "self.command.linear.x = 'fast'", ["14: Vector3.x: expected float64, got 'fast'"]),
+        (KEPT + "print(self.command.liner)", ["14: Twist has no field 'liner'; did you mean 'linear'?"]),
+        (KEPT + "self.command = None\n    self.command.linaer = 1", ["15: Twist has no field 'linaer'"]),
+        (KEPT + "self.command.linear.x = 1.0", []),
+        (KEPT + "self.command = PoseStamped()\n    print(self.command.pose)", []),
+        (KEPT + "for self.command in [PoseStamped()]:\n        print(self.command.pose)", []),
+        (KEPT + "self.command = self.other\n    print(self.command.pose)", []),
+        (KEPT + "other.command.pose = 1", []),
+    ],
+)
+def test_a_message_of_an_attribute(tmp_path: Path, body: str, told: list[str]) -> None:
+    """Its type is known if the attribute is set to no other."""
+    texts = _told(tmp_path, body)
+    assert len(texts) == len(told)
+    assert all(text.startswith(start) for text, start in zip(texts, told, strict=True))
+
+
 FLAG = """def __init__(self):
     super().__init__("robot")
     self.is_on = False
