@@ -26,7 +26,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from enum import Enum
 from types import FrameType
-from typing import NamedTuple
+from typing import NamedTuple, NoReturn
 
 from graphflow.analysis.frames import stack_of
 from graphflow.analysis.user_code import called_by_loop, innermost, is_users
@@ -55,6 +55,7 @@ TRIES = 200
 _FRAGILE = (logging.__file__, unawaited.__file__)
 """Modules in which no error may be raised: one holds locks, the other is called by finalizers, which lose errors."""
 _MANAGER = "_ExecutorManagerThread"
+_POOL = "the work of a process pool"
 """The class of the thread that keeps the interpreter alive until a `ProcessPoolExecutor` has finished."""
 _INPUT = re.compile(r"(?<![\w.])input\s*\(|\bstdin\b")
 """Pattern of an expression that reads the terminal."""
@@ -208,12 +209,11 @@ class StopLimit:
             waited += LOOK_EVERY
             if waited - LOOK_EVERY < REMIND_AFTER <= waited:
                 _remind()
-        what = "; ".join(hindrances()) or "a thread in code outside this program"
-        say(
-            f"ended without cleanup {waited:.0f} s after its nodes: still waiting for {what}; give a thread daemon=True"
-        )
-        _flush()
-        os._exit(1)
+        what, way = "; ".join(hindrances()) or "a thread in code outside this program", "give a thread daemon=True"
+        if _POOL in what:
+            way = "end a pool in on_shutdown: pool.shutdown(wait=False, cancel_futures=True)"
+        say(f"ended without cleanup {waited:.0f} s after its nodes: still waiting for {what}; {way}")
+        _exit()
 
     def _ping(self) -> bool:
         """Ask the loop to answer, unless it owes an answer; returns False once the loop is closed."""
@@ -264,14 +264,22 @@ class StopLimit:
                 names = left_over(asyncio.all_tasks(self._loop))
             what = f"still running: {names}" if names else "it did not end"
         say(f"ended without cleanup {elapsed:.0f} s after the signal: {what}")
-        _flush()
-        os._exit(1)
+        _exit()
 
 
 def say(text: str) -> None:
     """Write a line to stderr by a system call; the terminal may be gone, or `print` be interrupted."""
     with suppress(OSError):
         os.write(2, f"{text}\n".encode())
+
+
+def _exit() -> NoReturn:
+    """End this process, and the workers of its process pools, which would go on without it."""
+    multiprocessing = sys.modules.get("multiprocessing")
+    for child in multiprocessing.active_children() if multiprocessing is not None else ():
+        child.kill()
+    _flush()
+    os._exit(1)
 
 
 def _flush() -> None:
@@ -320,9 +328,11 @@ def hindrances() -> Iterator[str]:
             import multiprocessing  # already imported by that thread's pool
 
             workers = ", ".join(str(child.pid) for child in multiprocessing.active_children())
-            yield f"the work of a process pool, processes {workers}"
-        else:
-            yield from (f"{place}, thread {thread.name!r}" for place in place_of(thread.ident))
+            yield f"{_POOL}, processes {workers}"
+            continue
+        place = next(place_of(thread.ident), "")
+        if place or thread is not threading.main_thread():
+            yield f"{place or 'code outside this program'}, thread {thread.name!r}"
 
 
 def place_of(thread: int) -> Iterator[str]:

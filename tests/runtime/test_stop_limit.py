@@ -9,11 +9,13 @@ import threading
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
+import psutil
 import pytest
 
 from graphflow.runtime.stop_limit import Step, Times, hindrances, is_reading, next_step
 from tests.cases import slow
 from tests.conftest import Machine
+from tests.until import until
 
 
 @pytest.mark.parametrize(
@@ -217,7 +219,12 @@ print("saved", flush=True)
             1,
             ["ended without cleanup", ".py:11 in read_port, thread 'port'; give a thread daemon="],
         ),
-        (POOLED, signal.SIGTERM, 1, ["ended without cleanup", "a thread in code outside this program"]),
+        (
+            POOLED,
+            signal.SIGTERM,
+            1,
+            ["ended without cleanup", "code outside this program, thread 'ThreadPoolExecutor-0_0'"],
+        ),
         (SLOW, signal.SIGINT, 0, ["clean", "saved"]),
     ],
 )
@@ -234,6 +241,37 @@ def test_programs_that_are_asked_to_end(
     for answer in answers:
         assert answer in started.text
     assert ("ended without cleanup" in started.text) == (answers[0] == "ended without cleanup")
+
+
+PROCESSES = """
+import os
+from concurrent.futures import ProcessPoolExecutor
+
+class Pooled(graphflow.Node):
+    @graphflow.task
+    async def start(self):
+        self.pool = ProcessPoolExecutor(1)
+        print("worker", self.pool.submit(os.getpid).result(), flush=True)
+        self.pool.submit(time.sleep, 100.0)
+        print("up", flush=True)
+
+graphflow.run(Pooled)
+"""
+
+
+@slow
+@pytest.mark.real
+def test_the_workers_of_a_process_pool_end_too(machine: Machine, tmp_path: Path) -> None:
+    """They do not outlive the program that was ended without them."""
+    file = tmp_path / "program.py"
+    file.write_text(HASTY + PROCESSES)
+    started = machine.start_python(str(file))
+    started.wait_for("up")
+    worker = int(started.text.partition("worker ")[2].split()[0])
+    started.process.send_signal(signal.SIGTERM)
+    assert started.wait() == 1
+    assert "end a pool in on_shutdown: pool.shutdown(wait=False, cancel_futures=True)" in started.text
+    until(lambda: not psutil.pid_exists(worker) or psutil.Process(worker).status() == psutil.STATUS_ZOMBIE)
 
 
 @pytest.mark.real
