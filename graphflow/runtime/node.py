@@ -431,7 +431,9 @@ class Node(AttributeHints):
 
         Raises:
             ParameterError: The parameter is already declared, or the override for it does not fit.
+            WrongThread: This is not the event loop's thread.
         """
+        self._core.refuse_other_threads("declare_parameter")
         return self.parameters.declare(Param(default, name=name, **limits).with_typing(dynamic=dynamic))
 
     def undeclare_parameter(self, name: str) -> None:
@@ -442,7 +444,11 @@ class Node(AttributeHints):
         """Run the blocking function `fn(*args)` in a worker thread. It cannot be cancelled.
 
         At most 32 run at a time in a process; further calls wait.
+
+        Raises:
+            WrongThread: This is not the event loop's thread: another thread calls the function itself.
         """
+        self._core.refuse_other_threads("offload")
         check_function(fn, "offload", "await self.offload(time.sleep, 0.5)")
         check_plain(fn, "offload")
         return await self.context.offload(fn, *args)
@@ -479,7 +485,12 @@ class Node(AttributeHints):
         """Clean up; for subclasses. Handlers and tasks have ended; publishers and clients still work."""
 
     async def enter(self, manager: AbstractAsyncContextManager[T] | AbstractContextManager[T]) -> T:
-        """Enter a context manager; it is exited when the node stops, last entered first, after `on_shutdown`."""
+        """Enter a context manager; it is exited when the node stops, last entered first, after `on_shutdown`.
+
+        Raises:
+            WrongThread: This is not the event loop's thread.
+        """
+        self._core.refuse_other_threads("enter")
         if isinstance(manager, AbstractAsyncContextManager):
             return await self._core.entered.enter_async_context(manager)
         return self._core.entered.enter_context(manager)

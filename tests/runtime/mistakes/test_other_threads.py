@@ -89,7 +89,14 @@ async def test_what_a_thread_may_not_do(graph: Graph) -> None:
     node = Talker()
     await graph.start(node)
     timer = node.create_timer(1.0, lambda: None)
-    for forbidden in (lambda: node.create_publisher(String, "late"), timer.reset, timer.cancel):
+    for forbidden in (
+        lambda: node.create_publisher(String, "late"),
+        lambda: node.declare_parameter("late", 1),
+        lambda: asyncio.run(node.offload(print)),
+        lambda: asyncio.run(node.enter(ThreadPoolExecutor(1))),
+        timer.reset,
+        timer.cancel,
+    ):
         with pytest.raises(WrongThread, match=r"thread 'vendor_0', only on the event loop; node.call_soon\(fn, ...\)"):
             await in_a_thread(forbidden)
     client = node.create_client(Trigger, "nobody")
