@@ -123,9 +123,20 @@ def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
     if near is None:
         parent, _, last = module.rpartition(".")
         beside = [m.name for m in iter_modules(getattr(sys.modules.get(parent), "__path__", []))]
-        hint = did_you_mean(last, beside) or _above(module, Path(root)) or _bundled(wanted)
+        hint = _other_project(module, Path(root)) or did_you_mean(last, beside)
+        hint = hint or _above(module, Path(root)) or _bundled(wanted)
         hint = hint or f"; modules are looked for in {root}"
     return f"cannot import {wanted}: there is no module {module!r}{hint}"
+
+
+def _other_project(module: str, root: Path) -> str:
+    """Suggest to install the project beside or below this one that has a missing module."""
+    top = module.partition(".")[0]
+    for folder in (root, root.parent):
+        if (folder / top / "pyproject.toml").is_file() and (folder / top / top).is_dir():
+            way = f"others find its modules once it is installed: pip install -e {folder / top}"
+            return f"; {folder / top} is a project of its own, and {way}"
+    return ""
 
 
 def _above(module: str, root: Path) -> str:

@@ -177,6 +177,16 @@ def test_a_project_without_its_file(tmp_path: Path) -> None:
     assert text.endswith(f"that of {tmp_path} is found once there is a file {tmp_path / 'pyproject.toml'}")
 
 
+@pytest.mark.parametrize("root", ["", "other"])
+def test_a_module_of_another_project(tmp_path: Path, root: str) -> None:
+    """It is found once its project is installed, from the folder beside it and from the one above."""
+    (tmp_path / "mylab" / "mylab").mkdir(parents=True)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "mylab" / "pyproject.toml").touch()
+    text = _no_module("mylab.greeter", "mylab.greeter", "Greeter", str(tmp_path / root))
+    assert text.endswith(f"others find its modules once it is installed: pip install -e {tmp_path / 'mylab'}")
+
+
 def test_a_package_that_another_hides(project: Path) -> None:
     """A name that an installed module has too is told as such, and not offered again."""
     (project / "json").mkdir()
