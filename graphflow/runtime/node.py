@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import inspect
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AbstractContextManager
 from dataclasses import replace
@@ -26,6 +27,7 @@ from graphflow.runtime.callables import written_at
 from graphflow.runtime.context import Context
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.checks import (
+    check_annotations,
     check_callback,
     check_function,
     check_group,
@@ -270,6 +272,8 @@ class Node(AttributeHints):
         if callback is not None:
             hint = "" if takes_info else "; with takes_info=True it is called with the message and a MessageInfo"
             check_callback(callback, range(2, 3) if takes_info else range(1, 2), what, place, hint)
+            if inspect.ismethod(callback):
+                check_annotations(callback, {type_.__name__: type_}, what, place)
         core, resolved = self._core, self._core.names.resolve(name)
         same = (part for part in core.parts if isinstance(part, TopicSubscription) and part.name == resolved)
         warn_doubled(core.log, callback, place, f"each message of {resolved}", same)

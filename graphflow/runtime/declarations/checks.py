@@ -175,11 +175,12 @@ def check_annotations(fn: Callable[..., object], expected: Mapping[str, type], w
     """Check that a function's annotations agree with the messages that it receives.
 
     Args:
+        fn: A function of a class, or a method of a node.
         expected: The classes of its arguments, after `self`, by their names in error texts.
 
     Annotations other than message classes are not checked.
     """
-    parameters = list(inspect.signature(fn).parameters.values())[1:]
+    parameters = list(inspect.signature(fn).parameters.values())[0 if inspect.ismethod(fn) else 1 :]
     for parameter, (called, wanted) in zip(parameters, expected.items(), strict=False):
         found = _annotated(fn, parameter.annotation)
         if isinstance(found, type) and issubclass(found, Message) and not issubclass(wanted, found):
@@ -213,7 +214,7 @@ def _annotated(fn: Callable[..., object], annotation: object) -> object:
     if not isinstance(annotation, str):
         return annotation
     first, *others = annotation.strip("'\"").split(".")
-    found = fn.__globals__.get(first)
+    found = getattr(fn, "__globals__", {}).get(first)  # of a method, too
     for name in others:
         found = getattr(found, name, None)
     return found

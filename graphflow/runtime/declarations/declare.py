@@ -315,7 +315,7 @@ class Param(Declaration, Generic[V]):
         lt: float | None = None,
         read_only: bool = False,
         step: float = 0.0,
-        choices: Sequence[object] = (),
+        choices: Sequence[object] | None = None,
         name: str = "",
     ) -> None:
         self.place = here()
@@ -332,7 +332,7 @@ class Param(Declaration, Generic[V]):
                 step=step,
                 read_only=read_only,
             )
-            if choices:
+            if choices is not None:
                 self.parameter = replace(self.parameter, choices=self._choices(choices))
             if ge is not None and le is not None and ge > le:
                 raise ParameterError(f"ge={ge!r} is more than le={le!r}, so that no value fits")
@@ -352,6 +352,8 @@ class Param(Declaration, Generic[V]):
         """Convert the choices to the declared type. Raises ParameterError if they do not fit it."""
         if not isinstance(choices, (list, tuple)):
             raise ParameterError(f"choices= takes a list of values, not {choices!r}")
+        if not choices:
+            raise ParameterError(f"choices=[] would allow no value: write choices=[{self.parameter.default!r}, ...]")
         is_list = self.parameter.type.startswith("list[")
         return tuple(self.parameter.fit([value])[0] if is_list else self.parameter.fit(value) for value in choices)
 

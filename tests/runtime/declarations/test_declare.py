@@ -117,6 +117,7 @@ def test_choices_of_a_parameter() -> None:
     [
         ("other", ["fast", "slow"], "the default = 'other' is not one of 'fast', 'slow'"),
         ("a", ["a", 3], "the default is of type string, 3 is not"),
+        ("ab", [], r"choices=\[\] would allow no value: write choices=\['ab', ...\]"),
         ("ab", "ab", "choices= takes a list of values, not 'ab'"),
     ],
 )

@@ -214,3 +214,18 @@ def test_a_handler_that_is_annotated_for_another_type(decorator: Any, annotation
 def test_other_annotations_are_the_users_affair(annotation: Any) -> None:
     """Only a message class of another type is certain to be wrong."""
     annotated(subscription(Int32, "i"), annotation)
+
+
+def test_a_callback_of_another_type() -> None:
+    """A method that is passed is compared as a declared one; any other callable is not."""
+
+    class Heard(Node):
+        def strings(self, message: String) -> None: ...
+
+        def numbers(self, message: Int32) -> None: ...
+
+    node = Heard("heard")
+    node.create_subscription(Int32, "i", node.numbers)
+    node.create_subscription(Int32, "j", lambda message: None)
+    with pytest.raises(DeclarationError, match=r"strings is given Int32, .*'message' is annotated String"):
+        node.create_subscription(Int32, "k", node.strings)  # type: ignore[arg-type]
