@@ -87,7 +87,7 @@ def catch_signals(stop: asyncio.Event, *, is_limited: bool = False) -> Callable[
     def check(waited: float) -> None:
         nonlocal watch
         others = {number: found for number in former if (found := signal.getsignal(number)) is not caught}
-        _warn_of_replaced(others)
+        _warn_of_replaced(loop, others)
         if not others:
             wait = min(2 * waited, CHECK_EVERY)
             watch = loop.call_later(wait, check, wait)
@@ -120,12 +120,20 @@ def _begin_to_end(loop: asyncio.AbstractEventLoop, stop: asyncio.Event, limit: S
         limit.start(number)
 
 
-def _warn_of_replaced(others: Mapping[signal.Signals, object]) -> None:
+def _warn_of_replaced(loop: asyncio.AbstractEventLoop, others: Mapping[signal.Signals, object]) -> None:
+    # asyncio has no public API for the callbacks of signals, and uvloop none at all.
+    callbacks: Mapping[int, Any] = vars(loop).get("_signal_handlers", {})
     for number, handler in others.items():
+        if number in callbacks:
+            who = f"loop.add_signal_handler, which calls {callbacks[number]},"
+        elif "__sighandler" in repr(handler):
+            who = "loop.add_signal_handler"
+        else:
+            who = _name(handler)
         logger.warning(
             "%s has replaced the handler of %s: unless it calls the previous handler, that signal no longer "
             "stops the nodes, and their on_shutdown will not run",
-            _name(handler),
+            who,
             number.name,
         )
 
@@ -146,4 +154,4 @@ def _name(handler: object) -> str:
         return f"{function.__module__}.{function.__qualname__} ({code.co_filename}:{code.co_firstlineno})"
     if handler is None:
         return "code outside Python"
-    return f"code that chose {handler.name if isinstance(handler, signal.Handlers) else handler}"
+    return f"code that chose {handler.name}" if isinstance(handler, signal.Handlers) else repr(handler)

@@ -84,6 +84,23 @@ def vendors_handler(*_: object) -> None:
     """A handler that a library may install."""
 
 
+async def test_who_takes_a_signal_by_the_loop_is_named(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It is the callback, and not the loop's own handler."""
+    monkeypatch.setattr(ending, "CHECK_AFTER", 0.0)
+    restore, loop = catch_signals(asyncio.Event()), asyncio.get_running_loop()
+    try:
+        loop.add_signal_handler(signal.SIGTERM, vendors_handler)
+        for _ in range(5):
+            await asyncio.sleep(0)
+    finally:
+        loop.remove_signal_handler(signal.SIGTERM)
+        restore()
+    [record] = caplog.records
+    assert record.getMessage().startswith("loop.add_signal_handler, which calls <Handle vendors_handler() at ")
+
+
 async def test_who_takes_a_signal_is_named(
     graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -214,7 +214,7 @@ def _annotated(fn: Callable[..., object], annotation: object) -> object:
     if not isinstance(annotation, str):
         return annotation
     first, *others = annotation.strip("'\"").split(".")
-    found = getattr(fn, "__globals__", {}).get(first)  # of a method, too
+    found = fn.__globals__.get(first)
     for name in others:
         found = getattr(found, name, None)
     return found
