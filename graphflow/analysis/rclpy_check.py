@@ -13,6 +13,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -269,16 +270,39 @@ def findings_in(path: Path) -> list[Finding]:
 
 def unfollowed_in(path: Path) -> list[Place]:
     """Return the places at which callbacks poll something whose changes the source does not show."""
-    return sorted({place for cls in _classes_in(path) for place in cls.unfollowed()})
+    found = {place for cls in _classes_in(path) for place in cls.unfollowed()}
+    return sorted(found | {place for tree, file in _trees_in(path) for place in _helper_loops(tree, file)})
 
 
 def _classes_in(path: Path) -> Iterator[_Class]:
+    for tree, file in _trees_in(path):
+        yield from _classes(tree, file)
+
+
+def _trees_in(path: Path) -> Iterator[tuple[ast.Module, str]]:
     for file in files_in(path):
-        try:
-            tree = ast.parse(found_text(file))
-        except (OSError, SyntaxError, ValueError):
+        with suppress(OSError, SyntaxError, ValueError):
+            yield ast.parse(found_text(file)), str(file)
+
+
+def _helper_loops(tree: ast.Module, file: str) -> Iterator[Place]:
+    """Yield the polling loops of classes that are no nodes, whose methods callbacks may call."""
+    nodes = set(_BASES)
+    for definition in tree.body:
+        if not isinstance(definition, ast.ClassDef):
             continue
-        yield from _classes(tree, str(file))
+        if not nodes.isdisjoint(map(last_name, definition.bases)):
+            nodes.add(definition.name)
+            continue
+        methods = {item.name: item for item in definition.body if isinstance(item, FunctionNode)}
+        in_threads = {
+            last_name(key.value) for key in nodes_in(tree) if isinstance(key, ast.keyword) if key.arg == "target"
+        }
+        for method in (method for name, method in methods.items() if name not in in_threads):
+            for loop in (node for node in nodes_in(method) if isinstance(node, ast.While)):
+                poll = polled(loop, methods)
+                if poll is not None and poll.flags and not poll.gives_up:
+                    yield Place(file, loop.lineno)
 
 
 def files_in(path: Path) -> Iterator[Path]:

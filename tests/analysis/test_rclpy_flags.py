@@ -161,3 +161,30 @@ def test_the_parts(tmp_path: Path) -> None:
     assert found == Changers(frozenset({"on_pose", "done"}), is_known=True)
     assert not changers(frozenset({"pose"}), methods, frozenset({"wait"})).is_known
     assert written_from_outside(tree) == {"y"}
+
+
+HELPER = """
+class Waiter:
+    def __init__(self, node):
+        self.m = None
+        node.create_subscription(String, "x", self.got, 10)
+    def got(self, m): self.m = m
+    def wait(self):
+        while self.m is None: time.sleep(0.02)
+class P(Node):
+    def __init__(self):
+        super().__init__("p")
+        self.w = Waiter(self)
+        {}
+"""
+
+
+@pytest.mark.parametrize(
+    ("use", "lines"),
+    [("self.create_timer(0.5, self.w.wait)", [8]), ("Thread(target=self.w.wait).start()", [])],
+)
+def test_loops_of_other_classes(tmp_path: Path, use: str, lines: list[int]) -> None:
+    """They are not followed, and the places are told; those of threads keep no callback waiting."""
+    made = tmp_path / "helper.py"
+    made.write_text(HELPER.format(use))
+    assert [place.line for place in unfollowed_in(made)] == lines
