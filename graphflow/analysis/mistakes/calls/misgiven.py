@@ -20,6 +20,8 @@ _TAKERS = {
 """Functions and methods that take a callback and call it later."""
 _LATER = ("spin", "sleep", "wait", "result", "close", "cancel", "destroy", "remove", "join")
 """Prefixes of calls after which a loop's earlier callbacks may no longer be needed."""
+_LASTING = ("close", "cancel", "destroy", "remove")
+"""The same for callbacks of timers and subscriptions, which are called until they are ended."""
 
 _Made: TypeAlias = ast.Lambda | ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -30,6 +32,8 @@ class _Given(NamedTuple):
     made: _Made
     parents: list[ast.AST]
     """The nodes that enclose the call that it is passed to."""
+    taker: str
+    """The name of what is called."""
 
 
 def misgiven(code: ast.AST, starts: str = "self.spawn({})") -> Iterator[tuple[int, str]]:
@@ -78,9 +82,10 @@ def _all_given(code: ast.AST) -> Iterator[_Given]:
             continue
         for value in (*node.args, *(keyword.value for keyword in node.keywords)):
             if isinstance(value, ast.Lambda):
-                yield _Given(value, parents)
+                yield _Given(value, parents, _last_name(node.func))
             elif isinstance(value, ast.Name):
-                yield from (_Given(made, parents) for made in _defined_in_loop(value.id, parents))
+                taker = _last_name(node.func)
+                yield from (_Given(made, parents, taker) for made in _defined_in_loop(value.id, parents))
 
 
 def _defined_in_loop(name: str, parents: Sequence[ast.AST]) -> list[FunctionNode]:
@@ -137,7 +142,7 @@ def _loop_around(parents: Sequence[ast.AST]) -> ast.AST | None:
 def _of_loop(given: _Given) -> str:
     """Return the loop variable that a callback reads too late; "" if there is none."""
     loop = _loop_around(given.parents)
-    if loop is None or _may_be_over(loop):
+    if loop is None or _may_be_over(loop, is_lasting=given.taker.startswith("create_")):
         return ""
     own = {name.id for name in nodes_in(given.made) if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}
     own |= {argument.arg for argument in nodes_in(given.made) if isinstance(argument, ast.arg)}
@@ -147,14 +152,19 @@ def _of_loop(given: _Given) -> str:
     return next((name for name in read if name in changing and name not in own), "")
 
 
-def _may_be_over(loop: ast.AST) -> bool:
-    """Whether an iteration of a loop may be the last one, or may wait until its callback has been called."""
+def _may_be_over(loop: ast.AST, *, is_lasting: bool) -> bool:
+    """Whether an iteration of a loop may be the last one, or may wait until its callback has been called.
+
+    Args:
+        is_lasting: Whether the callback is called again and again, so that no wait is enough.
+    """
+    ends = (ast.Break, ast.Return, ast.Raise, ast.Yield, ast.YieldFrom, *(() if is_lasting else (ast.Await,)))
     for node, parents in walk(loop):
         if any(isinstance(parent, NESTED) for parent in parents):
             continue
-        if isinstance(node, (ast.Break, ast.Return, ast.Raise, ast.Await, ast.Yield, ast.YieldFrom)):
+        if isinstance(node, ends):
             return True
-        if isinstance(node, ast.Call) and _last_name(node.func).startswith(_LATER):
+        if isinstance(node, ast.Call) and _last_name(node.func).startswith(_LASTING if is_lasting else _LATER):
             return True
     items = loop.iter if isinstance(loop, ast.For) else None
     return isinstance(items, (ast.Tuple, ast.List)) and len(items.elts) < 2

@@ -66,6 +66,16 @@ def test_lambdas_that_call_nothing(body: str, text: str) -> None:
             "for i in range(3):\n    def cb(m):\n        self.at(i, m)\n    self.create_subscription(P, 'p', cb, 10)",
             "each cb in this loop sees the last i; write def cb(m, i=i):",
         ),
+        (
+            "for i in range(3):\n    rclpy.spin_until_future_complete(self, f)\n"
+            "    self.create_timer(1.0, lambda: self.show(i))",
+            LAST.format("i", "i=i"),
+        ),
+        (
+            "for i in range(3):\n    t = self.create_timer(1.0, lambda: self.show(i))\n    rclpy.spin_once(self)\n"
+            "    t.cancel()",
+            "",
+        ),
         ("for i in range(3):\n    self.create_timer(1.0, lambda i=i: self.show(i))", ""),
         ("for i in range(3):\n    self.create_timer(1.0, partial(self.show, i))", ""),
         ("for i in range(3):\n    self.create_timer(1.0, self.shows(i))", ""),
