@@ -120,8 +120,20 @@ class Declaration(MadeByNodes, ABC):
         """Create the runtime object of one node."""
 
     def on(self, node: Bound) -> object:
-        """Return the runtime object on a node."""
-        return node._core.objects[self.attribute]
+        """Return the runtime object on a node.
+
+        Raises:
+            DeclarationError: The object is not a node.
+        """
+        try:
+            return node._core.objects[self.attribute]
+        except AttributeError:
+            cls = type(node)
+            if any(base.__module__ == "graphflow.runtime.node" for base in cls.__mro__):
+                raise
+            text = f"{cls.__name__} is not a node, so that nothing opens its {type(self).__name__} {self.attribute!r}"
+            way = f"declare it in the node's class, and pass it on: {cls.__name__}(self.{self.attribute})"
+            raise DeclarationError(f"{self.place}: {text}; {way}") from None
 
 
 class Publisher(Declaration, Generic[M]):

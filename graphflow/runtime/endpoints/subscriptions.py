@@ -232,13 +232,13 @@ class TopicSubscription(Endpoint, Generic[M]):
         self._follow_echo()
 
     def _follow_echo(self) -> None:
-        """Watch for a feedback loop while the node's own publishers are the only ones."""
+        """Watch for a feedback loop while the node has a publisher of the topic itself."""
         own = self._announced()
-        is_alone = bool(self.matched) and all((e.zid, e.nid) == (own.zid, own.nid) for e in self.matched.values())
-        if self._echo is None and is_alone and not self._ignore_local:
+        has_own = any((e.zid, e.nid) == (own.zid, own.nid) for e in self.matched.values())
+        if self._echo is None and has_own and not self._ignore_local:
             self._echo = echo_of(self.host, self.name, lambda: self.received)
         if self._echo is not None:
-            self._echo.follow(is_alone=is_alone)
+            self._echo.follow(has_own=has_own)
 
     def _liveliness_changed(self, change: int, current: int, node: str) -> None:
         self._tell("liveliness_changed", change=change, current=current, detail=node)

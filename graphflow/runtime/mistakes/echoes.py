@@ -1,7 +1,7 @@
-"""Subscriptions whose publishers are all here: feedback loops of one node, and `ignore_local` that ignores everything.
+"""Subscriptions whose publishers are here: feedback loops of one node, and `ignore_local` that ignores everything.
 
-There is no cost per message: the subscription's counters are compared once a second, while all publishers of its topic
-are its own node's.
+There is no cost per message: the subscription's counters are compared once a second, while its own node publishes its
+topic.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ class Echo:
         self._last = 0
         self._has_warned = self._was_fast = False
 
-    def follow(self, *, is_alone: bool) -> None:
-        """Start the check while the node's own publisher is the only one, or stop it."""
-        if not is_alone:
+    def follow(self, *, has_own: bool) -> None:
+        """Start the check while the node has a publisher of the topic, or stop it."""
+        if not has_own:
             self.stop()
         elif self._alarm is None and not self._has_warned:
             self._last, self._was_fast = self._received(), False

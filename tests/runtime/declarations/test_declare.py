@@ -8,7 +8,17 @@ from typing import Any
 
 import pytest
 
-from graphflow import ActionClient, Client, DeclarationError, Group, Param, ParameterError, Publisher, Subscription
+from graphflow import (
+    ActionClient,
+    Client,
+    DeclarationError,
+    Group,
+    Node,
+    Param,
+    ParameterError,
+    Publisher,
+    Subscription,
+)
 from graphflow.interface import Interface
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
@@ -125,3 +135,19 @@ def test_choices_that_cannot_be(default: str, choices: Any, told: str) -> None:
     """The error has their place."""
     with pytest.raises(DeclarationError, match=rf"test_declare.py:\d+: {told}"):
         Param(default, choices=choices)
+
+
+def test_a_declaration_in_a_class_that_is_no_node() -> None:
+    """Its use is an error that shows where it belongs; a mixin is a part of the node."""
+
+    class Motor:
+        cmd_vel = Publisher(String, "cmd_vel")
+
+    class Car(Motor, Node): ...
+
+    told = (
+        "Motor is not a node, so that nothing opens its Publisher 'cmd_vel'; declare it in the node's class, and pass"
+    )
+    with pytest.raises(DeclarationError, match=rf"test_declare.py:\d+: {told} it on: Motor\(self.cmd_vel\)$"):
+        Motor().cmd_vel  # type: ignore[call-overload]  # noqa: B018
+    assert Car("car").cmd_vel.name == "/cmd_vel"

@@ -164,8 +164,8 @@ REMARKS = (
     ),
     Remark(r"^Node\.spawn\(\) got an unexpected keyword", "", "pass arguments by position: self.spawn(self.work, 3)"),
     Remark(
-        "^'(?P<kind>Publisher|Subscription|Client|ActionClient|Group)' object has no attribute",
-        r"self\.(?P<name>\w+)",
+        "^'(?P<kind>Publisher|Subscription|Client|ActionClient|Group|Transforms)' object has no attribute",
+        r"(?P<name>\w+)\.(?!\w+\.)(?:publish|call|send|lookup|get|transform|released|wait_|[a-z_]+\()",
         "a {kind} is declared in the body of the class: {name} = {kind}(...)",
     ),
     Remark("^descriptor '__init__' of 'super'", "", "write super().__init__(...), with parentheses after super"),

@@ -177,6 +177,16 @@ def test_with_and_for(monkeypatch: pytest.MonkeyPatch, text: str, line: str, rem
             "it takes a message: write goal.feedback(ACTION.Feedback(elapsed=...))",
         ),
         (
+            "'Transforms' object has no attribute 'lookup'",
+            'found = await self.tf.lookup("odom", "base_link")',
+            "a Transforms is declared in the body of the class: tf = Transforms(...)",
+        ),
+        (
+            "'Publisher' object has no attribute 'publish'",
+            "words.publish(Int32(data=self.count))",
+            "a Publisher is declared in the body of the class: words = Publisher(...)",
+        ),
+        (
             "'function' object has no attribute 'sum'",
             "print(g.result.sum)",
             "wait for it first: result = await g.result()",
