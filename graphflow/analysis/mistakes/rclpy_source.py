@@ -20,6 +20,7 @@ from graphflow.analysis.mistakes.calls.misplaced import replaced_methods
 from graphflow.analysis.mistakes.calls.mixed_interfaces import mixed_interfaces
 from graphflow.analysis.mistakes.calls.nested_spins import nested_spins
 from graphflow.analysis.mistakes.calls.single_spins import single_spins
+from graphflow.analysis.mistakes.calls.unused_publishers import unused_publishers
 from graphflow.analysis.mistakes.checks import IN_CODE, IN_FILES, Found
 from graphflow.analysis.mistakes.values.message_values import message_values, subscribed
 from graphflow.analysis.mistakes.values.names_in_pairs import names_in_pairs
@@ -40,6 +41,7 @@ _IN_PROGRAMS: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     nested_spins,
     inverted_waits,
     lifecycle_hooks,
+    unused_publishers,
 )
 """Checks of programs for rclpy alone."""
 
