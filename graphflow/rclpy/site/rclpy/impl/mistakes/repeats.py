@@ -6,6 +6,7 @@ ROS 2 keeps them all silently, until memory or processor time runs out.
 from __future__ import annotations
 
 import logging
+from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import Place
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 
 MANY = 10
 """The number of live entities of one kind, name and line that is reported."""
+MANY_APART = 50
+"""The same for timers whose callbacks have values of their own."""
 _KINDS = {
     "create_publisher": "publishers",
     "create_subscription": "subscriptions",
@@ -54,12 +57,14 @@ def count(node: Node, call: str, made: Any) -> None:
     made.made_at = origin
     if call in ("create_subscription", "create_service", "create_timer"):
         warn_of_hiding(node, made, asked.frame.f_code, _with_callbacks(node))
-    alike = sum(other.made_at == origin and _is_alive(other) for other in getattr(internals_of(node), kind))
-    if alike >= MANY and place not in _reported:
+    alike = [other for other in getattr(internals_of(node), kind) if other.made_at == origin and _is_alive(other)]
+    if len(alike) >= MANY and place not in _reported:
+        if len(alike) < MANY_APART and kind == "timers" and len(set(map(_bound, alike))) == len(alike):
+            return  # each is for something else, such as one turtle of several
         _reported.add(place)
         what = f"{kind}{_of(made)}"
         text = "%s has %d %s created in %s: create one in __init__, and keep it in an attribute"
-        logger.warning(text, node.get_fully_qualified_name(), alike, what, place)
+        logger.warning(text, node.get_fully_qualified_name(), len(alike), what, place)
 
 
 def _with_callbacks(node: Node) -> list[Timer | Subscription | Service]:
@@ -94,6 +99,14 @@ def _name(made: Any, *, is_again: bool) -> object:
     if isinstance(made, Timer):
         return getattr(made.callback, "__code__", made.callback) if is_again else made.callback
     return _topic(made)
+
+
+def _bound(timer: Timer) -> tuple[int, ...]:
+    """Return the identities of the values that a timer's callback has kept: defaults and variables around it."""
+    if not isinstance(timer.callback, FunctionType):
+        return ()
+    defaults, cells = timer.callback.__defaults__ or (), timer.callback.__closure__ or ()
+    return tuple(id(value) for value in (*defaults, *(cell.cell_contents for cell in cells)))
 
 
 def _topic(made: Any) -> str:

@@ -30,21 +30,25 @@ class Uncalled:
         self._life = life
         self._nodes: set[int] = set()
         """The ids of the nodes whose files have been read: entities exist once a node is spun, or leaves."""
+        self._seen: set[int] = set()
+        """The ids of the nodes whose classes have been read: one may wait in its constructor, and never be spun."""
         self._files: set[str] = set()
         life.on_leaving.append(self._leaves)
 
     def check(self) -> None:
-        """Check the files of nodes that are spun for the first time."""
+        """Check the files of nodes that are seen, or spun, for the first time."""
         for node in nodes_of(self._life):
-            if internals_of(node).times_added and internals_of(node).core.id not in self._nodes:
-                self._read(node)
+            number, is_spun = internals_of(node).core.id, internals_of(node).times_added > 0
+            if number not in (self._nodes if is_spun else self._seen):
+                self._read(node, is_spun=is_spun)
 
     def _leaves(self, node: Node) -> None:
-        self._read(node)
+        self._read(node, is_spun=True)
         self._nodes.discard(internals_of(node).core.id)
+        self._seen.discard(internals_of(node).core.id)
 
-    def _read(self, node: Node) -> None:
-        self._nodes.add(internals_of(node).core.id)
+    def _read(self, node: Node, *, is_spun: bool) -> None:
+        (self._nodes if is_spun else self._seen).add(internals_of(node).core.id)
         for file in set(_files_of(node)) - self._files:
             self._files.add(file)
             with suppress(OSError, SyntaxError, ValueError):  # its source is not available

@@ -9,7 +9,8 @@ import pytest
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from rclpy.impl.mistakes.repeats import MANY
+from rclpy.impl.mistakes import repeats
+from rclpy.impl.mistakes.repeats import MANY, MANY_APART
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 from tests.rclpy.conftest import Spinner
@@ -53,6 +54,26 @@ def test_what_is_many_by_right(node: Node, spin: Spinner, caplog: Caplog) -> Non
         node.destroy_subscription(node.create_subscription(String, "chat", nothing, 10))
         node.create_timer(10.0, nothing).cancel()
     assert told(caplog) == []
+
+
+@pytest.mark.parametrize("is_for_one", [True, False])
+def test_timers_for_several_things(
+    node: Node, spin: Spinner, caplog: Caplog, monkeypatch: pytest.MonkeyPatch, is_for_one: bool
+) -> None:
+    """Few that have values of their own are meant so; many are not."""
+    monkeypatch.setattr(repeats, "_reported", set())
+    runs: list[float] = []
+
+    def tick() -> None:
+        runs.append(len(runs) + 0.5)
+        name = "turtle" if is_for_one else runs[-1]
+        node.create_timer(10.0, lambda name=name: nothing(name))
+
+    node.create_timer(0.001, tick)
+    spin(lambda: len(runs) > MANY + 5)
+    assert len(told(caplog)) == is_for_one
+    spin(lambda: len(runs) > MANY_APART)
+    assert len(told(caplog)) == 1
 
 
 def test_two_services_of_one_name(node: Node, caplog: Caplog) -> None:
