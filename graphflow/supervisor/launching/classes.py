@@ -134,8 +134,8 @@ def _other_project(module: str, root: Path) -> str:
     top = module.partition(".")[0]
     for folder in (root, root.parent):
         if (folder / top / "pyproject.toml").is_file() and (folder / top / top).is_dir():
-            way = f"others find its modules once it is installed: pip install -e {folder / top}"
-            return f"; {folder / top} is a project of its own, and {way}"
+            way = f"cd {folder / top}; others find its modules once it is installed: pip install -e {folder / top}"
+            return f"; {folder / top} is a project of its own: {way}"
     return ""
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 from geometry_msgs.msg import TransformStamped
 from tf2_ros import Buffer, LookupException
 
-from graphflow.errors import UnknownFrame
+from graphflow.errors import ExtrapolationError, UnknownFrame
 from rclpy.impl.watches import unknown_frames
 from rclpy.time import Time
 
@@ -33,6 +35,22 @@ def test_a_misspelt_frame_is_told_once(caplog: pytest.LogCaptureFixture, monkeyp
     [text] = [record.getMessage() for record in caplog.records if "carot" in record.getMessage()]
     assert text.partition(": ")[0] == f"test_unknown_frames.py:{asked.__code__.co_firstlineno + 2}"
     assert "there is no frame 'carot'; did you mean 'carrot'?; the known frames are carrot, world" in text
+
+
+@pytest.mark.parametrize(("ahead", "pause", "is_told"), [(1, 0.5, True), (1, 3.0, False), (5, 0.5, False)])
+def test_a_time_whose_transform_is_on_its_way(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, ahead: int, pause: float, is_told: bool
+) -> None:
+    """It is told once in a series of failed lookups; not of a time far ahead, or now and then."""
+    times = iter(pause * number for number in range(30))
+    monkeypatch.setattr(unknown_frames, "time", SimpleNamespace(monotonic=lambda: next(times)))
+    kept, newest = unknown_frames.UnknownFrames(), 10**9
+    requested = newest + ahead * unknown_frames.AHEAD_NS // 2
+    error = ExtrapolationError("ahead", "world", "a", "a", "world", (requested, 0, newest))
+    for _ in range(30):
+        kept.lookup_failed(error)
+    told = [record.getMessage() for record in caplog.records if "is not there yet" in record.getMessage()]
+    assert len(told) == is_told
 
 
 def test_no_more_frames_are_kept_than_the_bound() -> None:
