@@ -6,9 +6,11 @@ A `__getattr__` in the classes would make each attribute access seven times slow
 from __future__ import annotations
 
 import dis
+import inspect
 import linecache
 import re
-from types import FrameType
+from collections.abc import Collection
+from types import CodeType, FrameType
 
 from graphflow.analysis.user_code import is_users, parts_of, short_place
 from graphflow.msgs.base import Message, no_field
@@ -55,7 +57,8 @@ def better_text(error: AttributeError) -> str:
         return ""
     if text := text_instead(thing, name):
         return text
-    hint = translation(name) or hint_of(thing, name) or _setter(thing, name) or _near(thing, name)
+    running = {part.tb_frame.f_code for part in parts_of(error.__traceback__)}
+    hint = translation(name) or hint_of(thing, name) or _setter(thing, name, running) or _near(thing, name)
     return f"{error}; {hint}" if hint else ""
 
 
@@ -78,16 +81,24 @@ def _near(thing: object, name: str) -> str:
     return f"did you mean {near!r}?" if near is not None else ""
 
 
-def _setter(thing: object, name: str) -> str:
-    """Return a hint with the method that sets an attribute and has not run yet; "" if there is none."""
+def _setter(thing: object, name: str, running: Collection[CodeType]) -> str:
+    """Return a hint with the method that sets an attribute and has not run yet; "" if there is none.
+
+    Args:
+        running: The functions that run now, which are no help.
+    """
     for cls in type(thing).__mro__:
-        for method in vars(cls).values():
+        for word, method in vars(cls).items():
             code = code_of(method)
-            if code is None or code.co_name == "__init__" or not is_users(code.co_filename):
+            if code is None or word == "__init__" or code in running or not is_users(code.co_filename):
                 continue
             if any(step.opname == "STORE_ATTR" and step.argval == name for step in dis.get_instructions(code)):
-                where = short_place(code.co_filename, code.co_firstlineno)
-                return f"{code.co_name} ({where}) sets it but has not run yet: start with {name} = None in the class"
+                where = f"{word} ({short_place(code.co_filename, code.co_firstlineno)})"
+                if word.strip("_") == "init":
+                    return f"{where} sets it, and nothing calls that: write __init__"
+                if inspect.getattr_static(type(thing), word) is not method:
+                    return f"{where} sets it, and {type(thing).__name__} replaces that: call super().{word}() there"
+                return f"{where} sets it but has not run yet: start with {name} = None in the class"
     return ""
 
 

@@ -189,6 +189,35 @@ def test_attributes_that_a_method_sets_later() -> None:
         assert text or str(caught.value) == begin
 
 
+class Rover(Follower):
+    """Has setters that do not run."""
+
+    def moved(self, pose: str) -> None:
+        """Do without the pose."""
+
+    def _init_(self) -> None:
+        self.laps = 0
+
+    def measured(self) -> None:
+        self.distance: float = self.distance + 1.0
+
+
+@pytest.mark.parametrize(
+    ("use", "way"),
+    [
+        (lambda rover: rover.pose, "sets it, and Rover replaces that: call super().moved() there"),
+        (lambda rover: rover.laps, "sets it, and nothing calls that: write __init__"),
+        (lambda rover: rover.measured(), "has no attribute 'distance'"),
+    ],
+)
+def test_setters_that_do_not_run(use: Any, way: str) -> None:
+    """A method that is replaced, or misspelt, is no later one; nor is the one that fails."""
+    with pytest.raises(AttributeError) as caught:
+        use(Rover())
+    explain(caught.value)
+    assert str(caught.value).endswith(way)
+
+
 @pytest.mark.parametrize(
     ("use", "way"),
     [
