@@ -33,7 +33,8 @@ def _appended(repeated: ast.AST, makers: Sequence[ast.AST], *, of_node: bool) ->
         makers: The code that could make the object anew.
         of_node: Whether to look for attributes of a node only.
     """
-    changed = {name for node in nodes_in(repeated) for name in _changed_by(node)}
+    changers = makers if of_node else [repeated]  # another handler may change it
+    changed = {name for changer in changers for node in nodes_in(changer) for name in _changed_by(node)}
     made = {name for maker in makers for node in nodes_in(maker) for name in _made_by(node)}
     found: dict[int, str] = {}
     for node, parents in walk(repeated):

@@ -25,6 +25,11 @@ class Trail(Node):
             _HANDLER.format("self.here.pose.position.x = pose.x; self.path.poses.append(self.here)"),
             "self.path.poses gets the same self.here each time, so that all of its items show the last change",
         ),
+        (
+            _HANDLER.format("self.here.pose.position.x = pose.x")
+            + "    def publish(self):\n        self.path.poses.append(self.here)\n",
+            "self.path.poses gets the same self.here each time",
+        ),
         ("point = Point()\nfor x in xs:\n    point.x = x\n    path.points.append(point)", "the same point each time"),
         ("while ok():\n    for x in xs:\n        p.x = x\n        found.append(p)", "the same p each time"),
         ("for x in xs:\n    marker.pose.position.x = x\n    all.append(marker.pose)", "the same marker.pose each time"),
@@ -51,6 +56,7 @@ def test_the_same_object_each_time(code: str, told: str) -> None:
         "while ok():\n    node.parent = last\n    found.append(node)\n    node = node.next",
         _HANDLER.format("self.path.poses.clear(); self.here.x = pose.x; self.path.poses.append(self.here)"),
         _HANDLER.format("self.here.x = pose.x; self.path.append(self.here)\n    def more(self): self.here = Pose()"),
+        _HANDLER.format("self.here = pose") + "    def publish(self): self.path.append(self.here)\n",
         _HANDLER.format("here = Pose(); here.x = pose.x; self.path.append(here)"),
     ],
 )

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
 from graphflow.analysis.user_code import short_place
 from graphflow.msgs import registry
+from graphflow.msgs.homes import homes
 from graphflow.msgs.registry import KINDS
 from rclpy.impl.callers import caller
 from rclpy.impl.mistakes import repeats
@@ -118,12 +119,18 @@ def _class_advice(word: str, value: object) -> str:
         found = next((n for n in names if value in (n, n.replace("/", "."), n.rpartition("/")[2])), "")
         package, _, base = found.replace("/", ".").rpartition(".")
         return f"give the class: from {package} import {base}" if found else ""
+    ending = _ENDINGS.get(word, "")
+    for home in homes(value.__name__) if isinstance(value, type) else ():
+        if home.endswith(ending):
+            return f"write from {home} import {value.__name__}"
     for part, (kind, calls) in _USES.items():
         if isinstance(value, type) and hasattr(value, part):
             return f"{value.__name__} is {kind}: use {calls}"
     return ""
 
 
+_ENDINGS = {"msg_type": ".msg", "srv_type": ".srv", "action_type": ".action"}
+"""The ends of the modules with the interfaces that a parameter takes."""
 _USES = {
     "Goal": ("an action", "ActionServer or ActionClient"),
     "Request": ("a service", "create_service or create_client"),

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from example_interfaces.action import Fibonacci
-from std_msgs.msg import String
+from std_msgs.msg import Empty, String
 from std_srvs.srv import Trigger
 
 import rclpy
@@ -55,6 +55,11 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
         lambda n: n.create_service(String, "chat", n.tick),
         RuntimeError,
         "String is a message: use create_publisher or create_subscription",
+    ),
+    (
+        lambda n: n.create_service(Empty, "reset", n.tick),
+        RuntimeError,
+        "got Empty: write from std_srvs.srv import Empty",
     ),
     (lambda n: n.create_client(Fibonacci, "a"), RuntimeError, "Fibonacci is an action: use ActionServer or"),
     (
