@@ -322,7 +322,7 @@ def _remind() -> None:
 def hindrances() -> Iterator[str]:
     """List the reasons why this process does not end: lines of user code, by thread, and work in process pools."""
     for thread in threading.enumerate():
-        if thread.daemon or thread.ident is None:
+        if thread.daemon or thread.ident is None or thread.name.startswith("graphflow-"):
             continue
         if type(thread).__name__ == _MANAGER:
             import multiprocessing  # already imported by that thread's pool

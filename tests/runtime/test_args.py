@@ -99,7 +99,7 @@ def test_values_for_one_node() -> None:
         (["-p", "x:=", "100"], "-p 'x:=': the value is missing; write it after :=, without a space"),
         (["-p", "a:=[1,", "2]"], "-p 'a:=[1,': the bracket is not closed; put quotes around a rule with blanks in it"),
         (["-p", "a:={b: [1]"], "-p 'a:={b: [1]': the bracket is not closed; put quotes around a rule"),
-        (["-p", "a:=*b"], "not valid YAML"),
+        (["-p", "a:=*b"], "aliases are not used here"),
         (["-p", "a:=1 b:=2"], "-p 'a:=1 b:=2': write one -p each: -p a:=1 -p b:=2"),
         (["-r", "nothing"], "'nothing' is not a remap rule; write it as from:=to"),
         (["-r", "__nod:=x"], "'__nod' is not a remap key; did you mean '__node:=x'?"),

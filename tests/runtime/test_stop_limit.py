@@ -223,7 +223,7 @@ print("saved", flush=True)
             POOLED,
             signal.SIGTERM,
             1,
-            ["ended without cleanup", "code outside this program, thread 'ThreadPoolExecutor-0_0'"],
+            ["ended without cleanup", "code outside this program, thread 'ThreadPoolExecutor-"],
         ),
         (SLOW, signal.SIGINT, 0, ["clean", "saved"]),
     ],

@@ -119,10 +119,9 @@ def _class_advice(word: str, value: object) -> str:
         found = next((n for n in names if value in (n, n.replace("/", "."), n.rpartition("/")[2])), "")
         package, _, base = found.replace("/", ".").rpartition(".")
         return f"give the class: from {package} import {base}" if found else ""
-    ending = _ENDINGS.get(word, "")
-    for home in homes(value.__name__) if isinstance(value, type) else ():
-        if home.endswith(ending):
-            return f"write from {home} import {value.__name__}"
+    name, ending = value.__name__ if isinstance(value, type) else "", _ENDINGS.get(word, "")
+    if home := next((home for home in homes(name) if home.endswith(ending)), ""):
+        return f"write from {home} import {name}"
     for part, (kind, calls) in _USES.items():
         if isinstance(value, type) and hasattr(value, part):
             return f"{value.__name__} is {kind}: use {calls}"

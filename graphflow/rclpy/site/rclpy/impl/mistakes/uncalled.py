@@ -6,6 +6,7 @@ Python runs them silently and without effect.
 from __future__ import annotations
 
 import logging
+import time
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
     from rclpy.node import Node
 
+UNSPUN = 1.0
+"""Seconds from which on a node that nobody spins is checked."""
 logger = logging.getLogger("graphflow")
 
 
@@ -36,10 +39,11 @@ class Uncalled:
         life.on_leaving.append(self._leaves)
 
     def check(self) -> None:
-        """Check the files of nodes that are seen, or spun, for the first time."""
+        """Check the files of nodes that are spun for the first time, or that have not been spun for long."""
         for node in nodes_of(self._life):
-            number, is_spun = internals_of(node).core.id, internals_of(node).times_added > 0
-            if number not in (self._nodes if is_spun else self._seen):
+            inner = internals_of(node)
+            is_spun, is_late = inner.times_added > 0, time.monotonic() - inner.begun > UNSPUN
+            if inner.core.id not in (self._nodes if is_spun else self._seen) and (is_spun or is_late):
                 self._read(node, is_spun=is_spun)
 
     def _leaves(self, node: Node) -> None:
