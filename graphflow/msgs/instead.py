@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from math import floor, isfinite
 
+from graphflow.errors import EncodeError
 from graphflow.msgs import base
 from graphflow.times import Duration, Time
 from graphflow.typographic import plain
@@ -31,6 +32,19 @@ def instead(type_: FieldType, value: object, fields: Sequence[Field] = ()) -> st
     """
     text = _array(type_, value) if type_.array else _one(type_, value, fields)
     return f"; write {text}" if text is not None and len(text) <= _SHOWN else ""
+
+
+def in_its_message(type_: type[base.Message], value: object) -> str:
+    """Return advice on a value that was given in place of a message with a single field; empty if there is none."""
+    fields = type_.SCHEMA.fields
+    if len(fields) != 1 or not isinstance(value, (str, int, float)):
+        return ""
+    name, shown = fields[0].name, repr(value)
+    try:
+        type_(**{name: value}).to_bytes()
+    except EncodeError:
+        shown = repr(str(value)) if fields[0].type.base in schema.STRINGS else "..."
+    return f"; write {type_.__name__}({name}={shown})"
 
 
 def _one(type_: FieldType, value: object, fields: Sequence[Field]) -> str | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import inspect
 from collections.abc import Callable, Coroutine, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AbstractContextManager
 from dataclasses import replace
@@ -27,10 +26,10 @@ from graphflow.runtime.callables import written_at
 from graphflow.runtime.context import Context
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.checks import (
-    check_annotations,
     check_callback,
     check_function,
     check_group,
+    check_method,
     check_on_error,
     check_plain,
     check_qos,
@@ -272,8 +271,7 @@ class Node(AttributeHints):
         if callback is not None:
             hint = "" if takes_info else "; with takes_info=True it is called with the message and a MessageInfo"
             check_callback(callback, range(2, 3) if takes_info else range(1, 2), what, place, hint)
-            if inspect.ismethod(callback):
-                check_annotations(callback, {type_.__name__: type_}, what, place)
+            check_method(callback, type_, what, place)
         core, resolved = self._core, self._core.names.resolve(name)
         same = (part for part in core.parts if isinstance(part, TopicSubscription) and part.name == resolved)
         warn_doubled(core.log, callback, place, f"each message of {resolved}", same)
@@ -435,9 +433,9 @@ class Node(AttributeHints):
 
         Raises:
             ParameterError: The parameter is already declared, or the override for it does not fit.
-            WrongThread: This is not the event loop's thread.
         """
-        self._core.refuse_other_threads("declare_parameter")
+        if self._core.is_running:
+            self.context.refuse_other_threads("declare_parameter")
         return self.parameters.declare(Param(default, name=name, **limits).with_typing(dynamic=dynamic))
 
     def undeclare_parameter(self, name: str) -> None:
@@ -448,11 +446,9 @@ class Node(AttributeHints):
         """Run the blocking function `fn(*args)` in a worker thread. It cannot be cancelled.
 
         At most 32 run at a time in a process; further calls wait.
-
-        Raises:
-            WrongThread: This is not the event loop's thread: another thread calls the function itself.
+        Raises WrongThread in another thread, which calls the function itself.
         """
-        self._core.refuse_other_threads("offload")
+        self.context.refuse_other_threads("offload")
         check_function(fn, "offload", "await self.offload(time.sleep, 0.5)")
         check_plain(fn, "offload")
         return await self.context.offload(fn, *args)
@@ -474,7 +470,7 @@ class Node(AttributeHints):
         An error in it is logged.
 
         Raises:
-                        ClosedError: The node is not running.
+            ClosedError: The node is not running.
         """
         check_function(fn, "call_soon", "self.call_soon(self.work)")
         call_soon(self._core, fn, args)
@@ -489,26 +485,16 @@ class Node(AttributeHints):
         """Clean up; for subclasses. Handlers and tasks have ended; publishers and clients still work."""
 
     async def enter(self, manager: AbstractAsyncContextManager[T] | AbstractContextManager[T]) -> T:
-        """Enter a context manager; it is exited when the node stops, last entered first, after `on_shutdown`.
-
-        Raises:
-            WrongThread: This is not the event loop's thread.
-        """
-        self._core.refuse_other_threads("enter")
+        """Enter a context manager; it is exited when the node stops, last entered first, after `on_shutdown`."""
+        self.context.refuse_other_threads("enter")
         if isinstance(manager, AbstractAsyncContextManager):
             return await self._core.entered.enter_async_context(manager)
         return self._core.entered.enter_context(manager)
 
     def shutdown(self) -> None:
-        """End the node from within, from any thread; a process with nothing else to run then ends.
-
-        From any thread.
-        """
+        """End the node from within, from any thread; a process with nothing else to run then ends."""
         self._core.shutdown()
 
     async def wait_ended(self) -> None:
         """Wait until the node ends by `shutdown` or fails; raises the error it failed with."""
         await self._core.wait_ended()
-
-
-unrun.watch()

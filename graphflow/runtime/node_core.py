@@ -206,7 +206,8 @@ class NodeCore:
 
     def add(self, part: P, *, late: bool = False) -> P:
         """Add a part, and open it if it is due: `late` parts open after `on_start`. Raises WrongThread off the loop."""
-        self.refuse_other_threads("create_...")
+        if self._context is not None:
+            self._context.refuse_other_threads(f"create_... of node {self.full_name}")
         self.parts.append(part)
         if late and self._late is not None:
             self._late.append(part)
@@ -215,11 +216,6 @@ class NodeCore:
         if self.has_started:
             self._repeats.made(part)
         return part
-
-    def refuse_other_threads(self, what: str) -> None:
-        """Raise WrongThread if the node runs on the loop of another thread."""
-        if self._context is not None:
-            self._context.refuse_other_threads(f"{what} of node {self.full_name}")
 
     def forget(self, part: Part) -> None:
         if part in self.parts:

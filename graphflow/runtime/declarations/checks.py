@@ -190,6 +190,12 @@ def check_annotations(fn: Callable[..., object], expected: Mapping[str, type], w
             )
 
 
+def check_method(callback: Callable[..., object], type_: type, what: str, place: Place) -> None:
+    """Check that a method's annotation agrees with the messages that it receives; other callables are not checked."""
+    if inspect.ismethod(callback):
+        check_annotations(callback, {type_.__name__: type_}, what, place)
+
+
 def check_returned(fn: Callable[..., object], called: str, wanted: type, what: str, place: Place) -> None:
     """Check that a handler's return annotation agrees with the type that it must return.
 

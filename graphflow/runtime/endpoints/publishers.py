@@ -16,6 +16,7 @@ from graphflow.errors import ClosedError, EncodeError, Place
 from graphflow.executor.runner import Runner
 from graphflow.msgs import registry
 from graphflow.msgs.base import Message
+from graphflow.msgs.instead import in_its_message
 from graphflow.names import did_you_mean
 from graphflow.qos import DEFAULT, INFINITE_NS, Liveliness, Qos
 from graphflow.runtime.endpoints.endpoint import Endpoint
@@ -25,7 +26,6 @@ from graphflow.runtime.part import Host
 from graphflow.transport.base import LargeSender, Payload, Sender
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
-from graphflow.wire.schema import STRINGS
 from graphflow.wire.shared_memory import ring_key
 
 M = TypeVar("M", bound=Message)
@@ -247,7 +247,8 @@ class TopicPublisher(Endpoint, Generic[M]):
             ClosedError: The node is not running.
         """
         if message.__class__ is not self.type:
-            hint = f"; write {self.type.__name__}(...)" if isinstance(message, type) else self._with_name(message)
+            made = f"; write {self.type.__name__}(...)"
+            hint = made if isinstance(message, type) else in_its_message(self.type, message)
             raise EncodeError(f"{self.name} carries {self.type_name}, not {message!r}{hint}")
         sender = self._sender
         if self._here:
@@ -290,18 +291,6 @@ class TopicPublisher(Endpoint, Generic[M]):
         """Encode a message only to check its fields, so that a wrong type is found before there are subscriptions."""
         encode: Callable[[M], object] = self._codec.encode if self._large is None else self._codec.encode_parts
         encode(message)
-
-    def _with_name(self, value: object) -> str:
-        """Return a hint for a value published in place of a message with a single field."""
-        fields = self.type.SCHEMA.fields
-        if len(fields) != 1 or not isinstance(value, (str, int, float)):
-            return ""
-        name, shown = fields[0].name, repr(value)
-        try:
-            self.type(**{name: value}).to_bytes()
-        except EncodeError:
-            shown = repr(str(value)) if fields[0].type.base in STRINGS else "..."
-        return f"; write {self.type.__name__}({name}={shown})"
 
     def _send(self, payload: Any) -> None:
         self._order.number += 1

@@ -104,3 +104,6 @@ def advice(file: Path, classes: list[str], made: Collection[str] = ()) -> str:
         f"{file} defines {' and '.join(classes)}, but runs nothing: graphflow run {what}, "
         f"or as its last line: graphflow.run({classes[0]})\n"
     )
+
+
+watch()  # once a program imports nodes, native ones or rclpy's
