@@ -264,19 +264,17 @@ def _grade(wait: _Wait) -> Grade:
 
 def findings_in(path: Path) -> list[Finding]:
     """Return the findings in a Python file, or in all files below a folder; none for a file that cannot be read."""
-    found = [finding for cls in _classes_in(path) for finding in cls.findings()]
+    found = [f for tree, file in _trees_in(path) for cls in _classes(tree, file) for f in cls.findings()]
     return sorted(dict.fromkeys(found), key=lambda f: f.place)
 
 
 def unfollowed_in(path: Path) -> list[Place]:
     """Return the places at which callbacks poll something whose changes the source does not show."""
-    found = {place for cls in _classes_in(path) for place in cls.unfollowed()}
-    return sorted(found | {place for tree, file in _trees_in(path) for place in _helper_loops(tree, file)})
-
-
-def _classes_in(path: Path) -> Iterator[_Class]:
+    found: set[Place] = set()
     for tree, file in _trees_in(path):
-        yield from _classes(tree, file)
+        found.update(place for cls in _classes(tree, file) for place in cls.unfollowed())
+        found.update(_helper_loops(tree, file))
+    return sorted(found)
 
 
 def _trees_in(path: Path) -> Iterator[tuple[ast.Module, str]]:
@@ -288,6 +286,8 @@ def _trees_in(path: Path) -> Iterator[tuple[ast.Module, str]]:
 def _helper_loops(tree: ast.Module, file: str) -> Iterator[Place]:
     """Yield the polling loops of classes that are no nodes, whose methods callbacks may call."""
     nodes = set(_BASES)
+    keywords = [node for node in nodes_in(tree) if isinstance(node, ast.keyword)]
+    in_threads = {last_name(keyword.value) for keyword in keywords if keyword.arg == "target"}
     for definition in tree.body:
         if not isinstance(definition, ast.ClassDef):
             continue
@@ -295,9 +295,6 @@ def _helper_loops(tree: ast.Module, file: str) -> Iterator[Place]:
             nodes.add(definition.name)
             continue
         methods = {item.name: item for item in definition.body if isinstance(item, FunctionNode)}
-        in_threads = {
-            last_name(key.value) for key in nodes_in(tree) if isinstance(key, ast.keyword) if key.arg == "target"
-        }
         for method in (method for name, method in methods.items() if name not in in_threads):
             for loop in (node for node in nodes_in(method) if isinstance(node, ast.While)):
                 poll = polled(loop, methods)

@@ -242,7 +242,7 @@ class Reporter:
                 self._doubted.pop(ring, None)
             if stands or any(entity.zid in unknown for entity in self._process.cache):
                 continue
-            if report.is_likely and ring <= graph.activities.keys() and not self._is_doubted(ring):
+            if report.is_likely and ring <= graph.activities.keys() and not self._stays_away(ring):
                 continue
             self._doubted.pop(ring, None)
             del self.reports[ring]
@@ -250,8 +250,8 @@ class Reporter:
             if not ring <= dead and not report.is_in_vain:  # members that are dead are in another ring, reported next
                 logger.warning("the deadlock of %s has cleared", report.who)
 
-    def _is_doubted(self, ring: Ring) -> bool:
-        """Whether a deadlock has been out of sight for a while, and not only at one line of a loop."""
+    def _stays_away(self, ring: Ring) -> bool:
+        """Note that a deadlock is out of sight; return whether it has been for a while, not at one line of a loop."""
         now_ns = self._process.clock.monotonic_ns()
         return now_ns - self._doubted.setdefault(ring, now_ns) >= to_ns(0.999 * PROBE_AFTER)
 

@@ -55,8 +55,8 @@ TRIES = 200
 _FRAGILE = (logging.__file__, unawaited.__file__)
 """Modules in which no error may be raised: one holds locks, the other is called by finalizers, which lose errors."""
 _MANAGER = "_ExecutorManagerThread"
-_POOL = "the work of a process pool"
 """The class of the thread that keeps the interpreter alive until a `ProcessPoolExecutor` has finished."""
+_POOL = "the work of a process pool"
 _INPUT = re.compile(r"(?<![\w.])input\s*\(|\bstdin\b")
 """Pattern of an expression that reads the terminal."""
 

@@ -88,13 +88,15 @@ def outer_workspace(workspace: Workspace) -> Workspace | None:
     return None if above == workspace.root else workspace_around(above)
 
 
-def no_packages(workspace: Workspace, *, are_few: bool = False) -> list[str]:
+def no_packages(workspace: Workspace, *, setup_is_enough: bool = False) -> list[str]:
     """Return the faults of folders that are meant as packages and are none.
 
     Args:
-        are_few: Whether a `setup.py` alone counts, too.
+        setup_is_enough: Whether a `setup.py` alone shows that a package is meant.
     """
-    meant = [one for one in folders(_source(workspace)) if _is_intended(one) or (are_few and one.package is None)]
+    meant = [
+        one for one in folders(_source(workspace)) if _is_intended(one) or (setup_is_enough and one.package is None)
+    ]
     return [fault for found in meant if (fault := _lack(found))]
 
 

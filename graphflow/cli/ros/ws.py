@@ -47,7 +47,7 @@ def ws(as_json: bool, habit: tuple[str, ...]) -> int:
     if not workspace.packages:
         new = "in src/, graphflow pkg create --build-type ament_python NAME creates one"
         none = f"there is no package in {workspace.root}: go to a folder that has packages in src/; {new}"
-        for fault in no_packages(workspace, are_few=True) or [none]:
+        for fault in no_packages(workspace, setup_is_enough=True) or [none]:
             output.error(fault)
         return exits.FAILED
     for name, folder in workspace.interfaces.items():

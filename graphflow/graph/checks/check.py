@@ -6,7 +6,6 @@ import os
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from fnmatch import fnmatchcase
 from pathlib import Path
 
 from graphflow.errors import EncodeError, GraphflowError, ParameterError, Place, Problem
@@ -179,19 +178,19 @@ def _check_params(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
 
 def _check_optional(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
     """Check that each parameter set for many nodes at once is one of at least one node."""
-    known, made = set(COMMON_PARAMETERS), set[str]()
+    imported: list[Interface] = []
     if any(node.executable for node in plan.nodes):  # their parameters are not known
         return
     for interface in interfaces.values():
         if isinstance(interface, Problem) or interface.dynamic_names is True:
             return
-        known.update(p.name for p in interface.params)
-        made.update(interface.made_params)
+        imported.append(interface)
+    known = {*COMMON_PARAMETERS, *(param.name for interface in imported for param in interface.params)}
     optional = {
         (n, s.place) for node in plan.nodes for n, s in node.params.items() if s.is_optional and not s.is_unchecked
     }
     for name, place in sorted(optional):
-        if name not in known and not any(fnmatchcase(name, pattern) for pattern in made):
+        if name not in known and not any(interface.may_have(name) for interface in imported):
             yield Problem(place, f"no node of this graph has a parameter {name!r}{did_you_mean(name, known)}")
 
 

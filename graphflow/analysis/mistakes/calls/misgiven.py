@@ -78,13 +78,12 @@ def _in_threads(code: ast.AST, methods: dict[str, FunctionNode], starts: str) ->
 
 def _all_given(code: ast.AST) -> Iterator[_Given]:
     for node, parents in walk(code):
-        if not (isinstance(node, ast.Call) and _last_name(node.func) in _TAKERS):
+        if not (isinstance(node, ast.Call) and (taker := _last_name(node.func)) in _TAKERS):
             continue
         for value in (*node.args, *(keyword.value for keyword in node.keywords)):
             if isinstance(value, ast.Lambda):
-                yield _Given(value, parents, _last_name(node.func))
+                yield _Given(value, parents, taker)
             elif isinstance(value, ast.Name):
-                taker = _last_name(node.func)
                 yield from (_Given(made, parents, taker) for made in _defined_in_loop(value.id, parents))
 
 

@@ -26,20 +26,13 @@ def unused_publishers(module: ast.Module) -> Iterator[tuple[int, str]]:
     used = {node.attr for node in attributes if not isinstance(node.ctx, ast.Store)}
     texts = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     set_ = {node.attr for node in attributes if isinstance(node.ctx, ast.Store)}
+    publishing = [node.value for node in attributes if node.attr == "publish" and is_own(node.value)]
     for node in nodes:
         match node:
             case ast.Assign(targets=[ast.Attribute(attr=name) as target], value=ast.Call(func=made)) if (
                 is_own(target) and last_name(made) == "create_publisher" and name not in used | texts
             ):
                 way = f"call self.{name}.publish(...)"
-                if other := next((n for n in attributes if _publishes(n, module) and n.attr not in set_), None):
+                if other := next((one for one in publishing if one.attr not in set_), None):
                     way = f"line {other.lineno} has self.{other.attr}, which nothing sets: write self.{name} there"
                 yield node.lineno, f"self.{name} publishes nothing, since no other line uses it: {way}"
-
-
-def _publishes(attribute: ast.Attribute, module: ast.Module) -> bool:
-    """Whether an attribute of the node is used as a publisher: `self.pub` of `self.pub.publish`."""
-    return is_own(attribute) and any(
-        isinstance(node, ast.Attribute) and node.attr == "publish" and node.value is attribute
-        for node in nodes_in(module)
-    )

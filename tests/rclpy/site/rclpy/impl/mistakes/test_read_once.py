@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
-import itertools
-import sys
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,6 +12,7 @@ from rcl_interfaces.srv import SetParameters
 
 from rclpy.impl.mistakes.read_once import without_effect
 from rclpy.node import Node
+from tests.written import Written
 
 Caplog = pytest.LogCaptureFixture
 
@@ -30,19 +27,6 @@ class Car(Node):
 """
 KEEP = '        self.speed = self.get_parameter("speed").value\n'
 TICK = "    def tick(self):\n        print(self.speed)\n"
-_numbers = itertools.count()
-
-
-def car_of(folder: Path, code: str) -> Any:
-    name = f"rclpy_read_once_{next(_numbers)}"
-    file = folder / f"{name}.py"
-    file.write_text(code)
-    spec = importlib.util.spec_from_file_location(name, file)
-    assert spec is not None
-    assert spec.loader is not None
-    sys.modules[name] = module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.Car
 
 
 def set_by_others(node: Any, value: float) -> bool:
@@ -55,9 +39,9 @@ def told(caplog: Caplog) -> list[str]:
     return [text for text in caplog.messages if "without effect" in text]
 
 
-def test_a_parameter_that_is_set_without_effect(node: Node, caplog: Caplog, tmp_path: Path) -> None:
+def test_a_parameter_that_is_set_without_effect(node: Node, caplog: Caplog, written: Written) -> None:
     """It is told once, with the line of the read, when another process has changed it."""
-    make: Callable[[], Node] = car_of(tmp_path, HEAD + KEEP + TICK)
+    make: Callable[[], Node] = written(HEAD + KEEP + TICK).Car
     car = make()
     assert set_by_others(car, 1.0)
     assert told(caplog) == []
@@ -81,9 +65,9 @@ def test_a_parameter_that_is_set_without_effect(node: Node, caplog: Caplog, tmp_
     ],
     ids=["by a helper", "at the declaration", "converted", "passed on"],
 )  # fmt: skip
-def test_other_ways_to_read_it_once(code: str, line: int, tmp_path: Path) -> None:
+def test_other_ways_to_read_it_once(code: str, line: int, written: Written) -> None:
     """They are told with their line."""
-    assert f".py:{line}: 'speed' is set without effect" in without_effect(car_of(tmp_path, code), "speed")
+    assert f".py:{line}: 'speed' is set without effect" in without_effect(written(code).Car, "speed")
 
 
 @pytest.mark.parametrize(
@@ -100,6 +84,6 @@ def test_other_ways_to_read_it_once(code: str, line: int, tmp_path: Path) -> Non
     ],
     ids=["never", "later", "followed", "by a variable", "a callback", "called later", "a function", "a loop"],
 )
-def test_what_may_be_read_again(code: str, tmp_path: Path) -> None:
+def test_what_may_be_read_again(code: str, written: Written) -> None:
     """It is not told, nor is a parameter that nothing reads."""
-    assert without_effect(car_of(tmp_path, code), "speed") == ""
+    assert without_effect(written(code).Car, "speed") == ""
