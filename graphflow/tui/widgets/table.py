@@ -29,6 +29,18 @@ _QUANTITY = re.compile(r"(-?[\d.,]+) ?(ms|[a-zA-Z%]*)")
 _UNITS = {"ms": 1e-3, "s": 1.0, "m": 60.0, "h": 3600.0, "d": 86400.0, "k": 1e3, "M": 1e6, "G": 1e9}
 
 
+class _Lines(DataTable[Text | str]):
+    """A table that draws its lines again when it has measured them: Textual keeps those that it drew before."""
+
+    def on_idle(self) -> None:
+        if self._require_update_dimensions:  # Textual's own handler, which is called next, measures
+            self.call_next(self._draw_again)
+
+    def _draw_again(self) -> None:
+        self._clear_caches()
+        self.refresh()
+
+
 class TableView(View):
     """A view of rows identified by keys. Subclasses set COLUMNS and implement `rows`."""
 
@@ -44,7 +56,7 @@ class TableView(View):
 
     def __init__(self, hub: Hub, content: Content) -> None:
         super().__init__(hub, content)
-        self.table: DataTable[Text | str] = DataTable(cursor_type="row", zebra_stripes=False, cell_padding=1)
+        self.table = _Lines(cursor_type="row", zebra_stripes=False, cell_padding=1)
         self._empty = Static("", classes="hint", markup=False)
         self._find = Input(
             str(self.options.get("find", "")), placeholder="find; enter keeps, esc clears", classes="find"
@@ -53,8 +65,6 @@ class TableView(View):
         self._total = self._found = 0
         """Number of all rows, and of those that match the search."""
         self._columns: tuple[str, ...] = ()
-        self._filled = False
-        """Whether rows were added since the last draw."""
 
     def compose(self) -> ComposeResult:
         yield self.table
@@ -136,9 +146,6 @@ class TableView(View):
         self.set_class(not rows, "-empty")
         if not rows:
             self._empty.update(self.why_empty())
-        if self._filled:
-            self._filled = False
-            self.call_after_refresh(self._draw_again)
         columns, rest = self._fitting(rows)
         at = [self.COLUMNS.index(column) for column in columns]
         if rest:
@@ -177,15 +184,8 @@ class TableView(View):
         rest = max(0, room) + STRETCH_LEAST - 1 if stretching in found else 0
         return tuple(column for column in self.COLUMNS if column in found), rest
 
-    def _draw_again(self) -> None:
-        """Redraw all rows: the table caches rows that it drew before measuring them."""
-        # An update of any cell clears the cache.
-        for key, cells in list(self._shown.items())[:1]:
-            self.table.update_cell(key, self.COLUMNS[0], cells[0])
-
     def _fill(self, rows: dict[str, Cells], columns: tuple[str, ...], at: list[int]) -> None:
         kept, top = self._row_key, self.table.scroll_offset.y
-        self._filled = True
         self.table.clear(columns=columns != self._columns)
         if columns != self._columns:
             self._columns = columns

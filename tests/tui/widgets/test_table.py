@@ -51,6 +51,20 @@ async def test_the_cursor_stays_on_its_row(monkeypatch: pytest.MonkeyPatch) -> N
         assert "nothing there yet" in s.text
 
 
+@pytest.mark.parametrize("key", ["a", "b"])
+async def test_rows_that_are_drawn_before_they_are_measured(monkeypatch: pytest.MonkeyPatch, key: str) -> None:
+    """They are drawn again, old and new ones, with columns as wide as they need."""
+    monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
+    Numbers.now = {"a": ("a", "1")}
+    async with stage(Content("numbers")) as s:
+        await s.look()
+        Numbers.now = {key: ("what is much longer", "1")}
+        s.view.look(0.0)
+        assert "what is much longer" not in s.text
+        await s.look()
+        assert "what is much longer" in s.text
+
+
 async def test_where_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """The message names the search, and the key that clears it."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)

@@ -27,6 +27,7 @@ TOLD = "self.publisher publishes nothing, since no other line uses it: "
         ("print(Twist())", "call self.publisher.publish(...)"),
         ("self.pub.publish(Twist())", "line 6 has self.pub, which nothing sets: write self.publisher there"),
         ("other.pub.publish(Twist())", "call self.publisher.publish(...)"),
+        ("self.pub = make(); self.pub.publish(Twist())", "call self.publisher.publish(...)"),
     ],
 )
 def test_a_publisher_that_nothing_uses(line: str, way: str) -> None:

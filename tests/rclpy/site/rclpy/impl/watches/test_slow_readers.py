@@ -7,9 +7,11 @@ import time
 import pytest
 from std_msgs.msg import String
 
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.deadlock import waiting
 from rclpy.impl.watches import late_timers, slow_readers
 from rclpy.node import Node
+from rclpy.task import Future
 from tests.rclpy.conftest import Spinner
 
 Caplog = pytest.LogCaptureFixture
@@ -65,12 +67,26 @@ def test_a_callback_that_keeps_a_subscription(node: Node, spin: Spinner, caplog:
     assert text.endswith(f"{WAY}, or give it a callback group of its own and spin with MultiThreadedExecutor()")
 
 
-@pytest.mark.parametrize(("depth", "number"), [(1, 150), (10, 90), (200, 250)])
+@pytest.mark.parametrize(("depth", "number"), [(1, 150), (10, 90), (300, 450)])
 def test_losses_that_may_be_meant(node: Node, spin: Spinner, caplog: Caplog, depth: int, number: int) -> None:
     """A queue of one keeps the newest; few losses, or less than half, are nothing to report."""
     chat = node.create_publisher(String, "chat", 10)
     node.create_subscription(String, "chat", hear, depth)
     for _ in range(number):
+        chat.publish(String())
+    with pytest.raises(AssertionError, match="did not come about"):
+        spin(lambda: told(caplog), limit=0.5)
+
+
+def test_a_callback_that_spins(node: Node, spin: Spinner, caplog: Caplog) -> None:
+    """It waits for other callbacks: what keeps them is told by others."""
+    chat = node.create_publisher(String, "chat", 10)
+
+    def wait(_: String) -> None:
+        SingleThreadedExecutor().spin_until_future_complete(Future(), timeout_sec=0.2)
+
+    node.create_subscription(String, "chat", wait, 10)
+    for _ in range(150):
         chat.publish(String())
     with pytest.raises(AssertionError, match="did not come about"):
         spin(lambda: told(caplog), limit=0.5)
