@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import re
 import sys
 import tomllib
@@ -53,7 +52,7 @@ def own() -> set[str]:
 def foreign(file: Path) -> set[str]:
     """The packages that a file imports which neither Python nor graphflow has."""
     text, package = file.read_text(encoding="utf-8"), ".".join(file.relative_to(PROJECT).parts[:-1])
-    named = {found.module.partition(".")[0] for found in imports(ast.parse(text), package, text)}
+    named = {found.module.partition(".")[0] for found in imports(text, package)}
     return named - sys.stdlib_module_names - own() - {"__main__"}
 
 

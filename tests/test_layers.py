@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections import deque
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -96,23 +97,25 @@ def statements(tree: ast.AST) -> Iterator[ast.AST]:
                 todo += [part for part in value if isinstance(part, (ast.stmt, ast.excepthandler, ast.match_case))]
 
 
-def imports(tree: ast.AST, package: str, text: str = "__import__") -> Iterator[Import]:
-    """Every import of a file, those hidden inside functions too.
+@cache
+def imports(text: str, package: str) -> list[Import]:
+    """Every import of a file, those hidden inside functions too; three tests ask for those of all files.
 
     Args:
         package: The package of the file, which relative imports start from.
-        text: The file's text; calls are looked at if it has the name of a function that imports.
     """
+    tree, found = ast.parse(text), list[Import]()
     for node in ast.walk(tree) if "import_module" in text or "__import__" in text else statements(tree):
         if isinstance(node, ast.Import):
-            yield from (Import(node.lineno, alias.name) for alias in node.names)
+            found += [Import(node.lineno, alias.name) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             above = ".".join(package.split(".")[: len(package.split(".")) + 1 - node.level]) if node.level else ""
             base = ".".join(part for part in (above, node.module) if part)
             # `from graphflow import msgs` names a package, `from graphflow.names import split` does not.
-            yield from (Import(node.lineno, f"{base}.{alias.name}") for alias in node.names)
+            found += [Import(node.lineno, f"{base}.{alias.name}") for alias in node.names]
         elif isinstance(node, ast.Call) and _called(node) in ("import_module", "__import__"):
-            yield from (Import(node.lineno, str(a.value)) for a in node.args[:1] if isinstance(a, ast.Constant))
+            found += [Import(node.lineno, str(a.value)) for a in node.args[:1] if isinstance(a, ast.Constant)]
+    return found
 
 
 def _called(call: ast.Call) -> str:
@@ -128,15 +131,14 @@ def broken_rules(text: str, file: str) -> list[str]:
     parts = Path(file).with_suffix("").parts
     if parts in (("__init__",), ("__main__",)):  # the facade above all packages; tests/test_exports.py holds it
         return []
-    tree = ast.parse(text)
     package = parts[0]
     if package not in PACKAGES:
         return [f"{file}:1: {package!r} has no layer; add it to a table in {Path(__file__).name}"]
     allowed = OPENS.get(file, ())
-    used = [i for i in imports(tree, ".".join(("graphflow", *parts[:-1])), text) if i.module not in allowed]
+    used = [i for i in imports(text, ".".join(("graphflow", *parts[:-1]))) if i.module not in allowed]
     found = [(i.line, fault) for i in used if (fault := _fault(package, i.module, is_pure=file not in IMPURE))]
     if file != PRINTS and "print(" in text:
-        calls = [n for n in ast.walk(tree) if isinstance(n, ast.Call) and _called(n) == "print"]
+        calls = [n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Call) and _called(n) == "print"]
         found += [(n.lineno, f"only {PRINTS} prints; use output.data or output.talk") for n in calls]
     return [f"{file}:{line}: {fault}" for line, fault in sorted(found)]
 
@@ -166,7 +168,7 @@ def _fault(package: str, module: str, *, is_pure: bool) -> str | None:
 def test_exceptions_are_needed() -> None:
     """A file that no longer breaks a rule of purity is taken from the list."""
     for file in IMPURE:
-        names = {i.module.split(".")[0] for i in imports(ast.parse((PACKAGE / file).read_text("utf-8")), "graphflow")}
+        names = {i.module.split(".")[0] for i in imports((PACKAGE / file).read_text("utf-8"), "graphflow")}
         assert names & {*WAITING, *OUTSIDE}, file
 
 
@@ -203,7 +205,7 @@ def import_graph(files: Mapping[str, str]) -> dict[str, set[str]]:
     found: dict[str, set[str]] = {}
     for module, text in files.items():
         package = module if any(other.startswith(f"{module}.") for other in files) else module.rpartition(".")[0]
-        named = {i.module for i in imports(ast.parse(text), package, text)}
+        named = {i.module for i in imports(text, package)}
         # `from graphflow.wire import idl` names a module, `from graphflow.wire.idl import parse` something in one.
         found[module] = {name if name in files else name.rpartition(".")[0] for name in named} & set(files) - {module}
     return found
