@@ -1,6 +1,6 @@
 """How many generated cases are tried: by default a few, with `--cases full` many, else N new ones.
 
-`--cases half` is for CI: as `full`, but each commit has its turn at one half of the slow tests.
+`--cases turn` is for CI: as `full`, but each commit has its turn at one part of the slow tests.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ T = TypeVar("T")
 VARIABLE = "GRAPHFLOW_CASES"
 """How the option reaches test modules, which need it while they are imported."""
 _GIVEN = os.environ.get(VARIABLE, "few")
-TURN = int(os.environ.get("GRAPHFLOW_TURN", "0")) % 2
-"""The half of the slow tests that are run with `--cases half`."""
-_WANTED = "full" if _GIVEN == "half" else _GIVEN
+PARTS = 4
+TURN = int(os.environ.get("GRAPHFLOW_TURN", "0")) % PARTS
+"""The part of the slow tests that is run with `--cases turn`."""
+_WANTED = "full" if _GIVEN == "turn" else _GIVEN
 
 
 def count(few: int, full: int) -> int:
@@ -75,19 +76,17 @@ def limit(number: int) -> pytest.MarkDecorator:
 
 
 slow = pytest.mark.slow
-"""For a test that takes seconds and guards what seldom changes: it runs with `--cases full`."""
-NOT_NOW = pytest.mark.skip(
-    reason="one of several slow ones; --cases full tries all, and CI half of them with each commit"
-)
+"""For a test that takes a third of a second or more, or guards what seldom changes: it runs with `--cases full`."""
 
 
-def skip_slow(items: Sequence[pytest.Item]) -> None:
-    """Skip slow tests, all or the half that has no turn."""
+def without_slow(items: Sequence[pytest.Item]) -> tuple[list[pytest.Item], list[pytest.Item]]:
+    """The tests to run, and those to leave out: slow ones, all or the parts that have no turn."""
+    kept: list[pytest.Item] = []
+    left: list[pytest.Item] = []
     for item in items:
-        if item.get_closest_marker("slow") is None or (_WANTED != "few" and _GIVEN != "half"):
-            continue
-        if _GIVEN != "half" or zlib.crc32(item.nodeid.encode()) % 2 != TURN:
-            item.add_marker(NOT_NOW)
+        has_turn = _WANTED != "few" and (_GIVEN != "turn" or zlib.crc32(item.nodeid.encode()) % PARTS == TURN)
+        (kept if has_turn or item.get_closest_marker("slow") is None else left).append(item)
+    return kept, left
 
 
 def some(names: Iterable[Any], *always: Any) -> list[Any]:

@@ -43,7 +43,7 @@ PROGRAMS = PROJECT / "tests" / "programs"
 def pytest_addoption(parser: pytest.Parser) -> None:
     """`--cases`: see `tests.cases`."""
     parser.addoption(
-        "--cases", metavar="few|half|full|N", help="how many generated cases are tried; N: so many new ones"
+        "--cases", metavar="few|turn|full|N", help="how many generated cases are tried; N: so many new ones"
     )
 
 
@@ -58,28 +58,27 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
-    """With `-n auto`, two workers a core: tests of real processes wait more than they work."""
+    """With `-n auto`, three workers for two cores: tests of real processes wait."""
     config.option.dist = "worksteal"  # a few tests take long, and thousands a moment
-    return 2 * (os.cpu_count() or 1)
+    return -(-3 * (os.cpu_count() or 1) // 2)
 
 
 def pytest_collection_finish() -> None:
     """Keep the collector from going through all that was imported and collected, in each of its runs."""
-    gc.collect()
     gc.freeze()
     gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave most cases of tests with many to CI, unless single tests are asked for by name."""
-    from tests.cases import few_of_many, skip_slow
+    """Leave slow tests, and most cases of tests with many, to CI, unless single tests are asked for by name."""
+    from tests.cases import few_of_many, without_slow
 
-    skip_slow(items)
     if any("::" in word for word in config.args) or config.option.keyword:
         return
-    items[:], left = few_of_many(items)
-    if left:
-        config.hook.pytest_deselected(items=left)
+    quick, slow = without_slow(items)
+    items[:], rest = few_of_many(quick)
+    if slow or rest:
+        config.hook.pytest_deselected(items=[*slow, *rest])
 
 
 class Program:

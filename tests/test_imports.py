@@ -8,6 +8,8 @@ import sys
 
 import pytest
 
+from tests.cases import slow
+
 HEAVY = ("asyncio", "numpy", "pydantic", "textual")
 
 
@@ -33,6 +35,7 @@ def test_help_imports_nothing_heavy(option: str) -> None:
     assert imported(f"import graphflow.cli.main; graphflow.cli.main.main([{option!r}])") == []
 
 
+@slow
 @pytest.mark.parametrize("verb", ["topic", "node", "service", "param", "interface"])
 def test_help_of_a_verb_imports_nothing_heavy(verb: str) -> None:
     """The help of a verb that only looks at a graph does without it, too."""

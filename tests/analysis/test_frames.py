@@ -15,6 +15,7 @@ import pytest
 
 from graphflow.analysis import frames
 from graphflow.analysis.frames import awaited, code_of, running, stack_of, suspended, uncollected
+from tests.cases import slow
 
 
 def counting(limit: int) -> Generator[FrameType, None, None]:
@@ -143,6 +144,7 @@ assert gc.isenabled()
 """
 
 
+@slow
 def test_a_stack_that_is_read_while_collections_run() -> None:
     """They let other threads run; CPython 3.11 would then read frames that are gone, and crash."""
     subprocess.run([sys.executable, "-c", _COLLECTING], check=True, timeout=60)

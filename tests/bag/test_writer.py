@@ -22,6 +22,7 @@ from graphflow.errors import BagError
 from graphflow.msgs import registry
 from graphflow.msgs.std_msgs.msg import String
 from tests.bag.cast import CHATTER, COUNT, LAB, START, THING, record, some_records, write
+from tests.cases import slow
 
 
 class Clock:
@@ -47,6 +48,7 @@ def test_what_is_written_is_read(tmp_path: Path, compression: str) -> None:
     assert (bag.contents.start_ns, bag.contents.end_ns) == (START, START + 1_950_000_000)
 
 
+@slow
 @pytest.mark.parametrize("compression", COMPRESSIONS)
 def test_rosbags_reads_it(tmp_path: Path, compression: str) -> None:
     """The folder and the file, with no type known to it beforehand: the bag has the definitions."""

@@ -11,6 +11,7 @@ import pytest
 
 from graphflow.cli.completing import SCRIPTS
 from graphflow.cli.completion import split_line
+from tests.cases import slow
 from tests.conftest import Machine
 
 
@@ -43,6 +44,7 @@ COMP_CWORD=$((${{#COMP_WORDS[@]}}-1)); _graphflow; printf '%s\\n' "${{COMPREPLY[
 """
 
 
+@slow
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")
 @pytest.mark.parametrize(
     ("line", "found"),

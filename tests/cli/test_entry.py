@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import graphflow
+from tests.cases import slow
 
 INTERRUPTED = "import os, signal; os.kill(os.getpid(), signal.SIGINT); print('goes on')"
 
@@ -66,6 +67,7 @@ def test_the_package_is_a_command() -> None:
     assert graphflow.__version__ in done.stdout
 
 
+@slow
 def test_what_the_user_wants_done_at_the_end() -> None:
     """`atexit` functions run if the process has run a node; otherwise it ends at once."""
     code = "import atexit, sys, graphflow.cli.main as m; atexit.register(print, 'bye'); m.main = lambda: sys.exit(3)"

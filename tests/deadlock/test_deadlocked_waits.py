@@ -11,7 +11,7 @@ import pytest
 from graphflow import Group, Node, subscription, task, timer
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.deadlock.cast import Caplog, EventWithin, Promised, Robot, Waiter, at, in_vain, reports, say, the_report
 from tests.deadlock.deadlocked import Stuck, cannot_go_on, stuck
 from tests.flat import flat
@@ -122,6 +122,7 @@ class PermitsInTurn(PermitsTwiceInEach):
         self.permits = asyncio.Semaphore(3)
 
 
+@slow
 @pytest.mark.parametrize(
     ("program", "words"),
     [

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import event, given
 from hypothesis import strategies as st
 
-from tests.cases import cases, count, limit
+from tests.cases import cases, count, limit, slow
 from tests.deadlock.system_runs import outcome_of
 from tests.deadlock.systems import Ask, Both, Fail, How, Meet, Nap, Place, Server, Starter, Step, System, systems
 
@@ -45,6 +45,7 @@ def tell(*happened: str) -> None:
         event(what)
 
 
+@slow
 @long
 @cases(CASES * 2 // 5)
 @given(systems(), SEEDS)
@@ -113,6 +114,7 @@ def test_a_hopeless_call_of_a_client_in_a_group() -> None:
     assert outcome.refused == 1
 
 
+@slow
 def test_a_report_that_is_taken_back() -> None:
     """It is taken back half a second after the ring has ended, whatever else there was to be looked at."""
     servers = Server(Place(0, 0), "service"), Server(Place(1, 1), "service"), Server(Place(1, None), "parallel")
@@ -127,6 +129,7 @@ def test_a_report_that_is_taken_back() -> None:
     assert outcome.seconds < 5.0
 
 
+@slow
 def test_a_report_that_somebody_without_handlers_had_a_part_in() -> None:
     """It is taken back as any other is."""
     asks = Step(Ask(0, (Step(Ask(0, timeout=0.6)),)))
@@ -161,6 +164,7 @@ def test_somebody_who_joins_a_deadlock() -> None:
     assert not outcome.unnamed
 
 
+@slow
 def test_a_deadlock_of_several_rings_in_two_processes() -> None:
     """It is told once."""
     inner = Step(Both((Ask(0), Ask(1))))

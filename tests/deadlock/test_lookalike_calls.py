@@ -30,7 +30,7 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.deadlock.cast import Caplog, Dialler, Planner, Robot, reports, say
 from tests.deadlock.lookalikes import goes_on, legal
 from tests.runtime.cast import Log
@@ -192,6 +192,7 @@ class PushesItselfOut(Robot):
         return Empty.Response()
 
 
+@slow
 @pytest.mark.parametrize(
     "program",
     sample(

@@ -17,7 +17,7 @@ from graphflow.executor.clock import Clock
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.deadlock.cast import Caplog, Driver, Promised, Robot, Waiter, reports, say
 from tests.deadlock.lookalikes import goes_on, in_three_seconds, legal, three_seconds_from_now
 from tests.until import eventually
@@ -444,6 +444,7 @@ class ShieldsInATask(Robot):
         await asyncio.shield(asyncio.ensure_future(self.clock.sleep(4.0)))
 
 
+@slow
 @pytest.mark.parametrize(
     "program",
     sample(

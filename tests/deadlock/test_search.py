@@ -370,6 +370,7 @@ async def test_a_call_that_nobody_awaits(graph: Graph, caplog: Caplog) -> None:
     assert reports(caplog) == []
 
 
+@slow
 async def test_who_queues_behind_a_ring_is_a_victim(graph: Graph, caplog: Caplog) -> None:
     """It is named, and not as a part of the ring (row 16)."""
     await graph.start(*ring_of("ab"), Peer("late", "a", delay=0.1))
@@ -391,6 +392,7 @@ class Latecomer(Node):
         await self.mirror.call(Empty.Request())
 
 
+@slow
 @pytest.mark.parametrize("before", [False, True])
 async def test_who_queues_behind_a_ring_of_another_process(graph: Graph, caplog: Caplog, before: bool) -> None:
     """The report names whoever is there, and each process once who came later to it (row 16)."""
@@ -760,6 +762,7 @@ class Stubborn(Peer):
                 self.log.warning("again")
 
 
+@slow
 async def test_a_ring_that_opens_and_closes_again(graph: Graph, caplog: Caplog) -> None:
     """One that closes again at once is told once, however often one member tries again."""
     graph.deadlock = "report"
@@ -847,6 +850,7 @@ async def test_what_another_has_reported(graph: Graph, caplog: Caplog) -> None:
     assert len(reports(caplog)) == 1
 
 
+@slow
 async def test_two_rings_are_two_reports(graph: Graph, caplog: Caplog) -> None:
     """Each is told once, and neither as the other's victim."""
     graph.deadlock = "report"
@@ -913,6 +917,7 @@ class Planner(Node):
         return Empty.Response()
 
 
+@slow
 async def test_a_ring_of_the_same_members_that_wait_for_something_else(graph: Graph, caplog: Caplog) -> None:
     """A remedy that helps with the first of two calls: the ring through the second is told, too."""
     graph.deadlock = "report"

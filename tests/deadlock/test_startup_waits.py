@@ -16,6 +16,7 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
 from graphflow.testing.clock import settle
+from tests.cases import slow
 from tests.deadlock.cast import Caplog, at, in_vain, reports, say, the_report
 from tests.deadlock.stage import Stage
 from tests.flat import flat
@@ -177,6 +178,7 @@ async def test_ones_own_action(graph: Graph, caplog: Caplog) -> None:
     await end(*starting)
 
 
+@slow
 async def test_starts_that_go_on(graph: Graph, caplog: Caplog) -> None:
     """A service that a third node may still offer, and one whose node is merely slow, are no deadlock."""
 

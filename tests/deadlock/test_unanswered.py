@@ -17,6 +17,7 @@ from graphflow.machines.waits.wait_graph import FREE, ActivityView, GroupView, Q
 from graphflow.machines.waits.wait_graph_json import to_json
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.testing import Graph
+from tests.cases import slow
 
 
 class Waiter(Node):
@@ -51,6 +52,7 @@ async def end_of(graph: Graph, asker: Asker, timeout: float) -> str:
     return str(caught.value)
 
 
+@slow
 async def test_a_server_of_this_process(graph: Graph) -> None:
     """The line of its wait is named; for the request that waits behind another, that one's."""
     waiter, asker = Waiter(), Asker()

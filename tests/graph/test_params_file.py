@@ -17,7 +17,7 @@ from graphflow.graph.params_file import Section, params_for, strays, write
 from graphflow.graph.plan import Plan
 from graphflow.graph.resolve import load
 from graphflow.interface import Interface, Parameter
-from tests.cases import count
+from tests.cases import count, slow
 
 TEXT = """\
 /**:
@@ -146,6 +146,7 @@ SCALARS: list[st.SearchStrategy[Any]] = [
 VALUES = st.one_of(*SCALARS, *(st.lists(s, min_size=1, max_size=4) for s in SCALARS))
 
 
+@slow
 @settings(deadline=None, max_examples=count(few=50, full=200), derandomize=True)
 @given(st.dictionaries(NAMES, VALUES, max_size=6))
 def test_what_is_written_reads_back_the_same(tmp_path_factory: pytest.TempPathFactory, params: dict[str, Any]) -> None:

@@ -18,7 +18,7 @@ from graphflow.graph.plan import Plan, Rule, Setting
 from graphflow.graph.resolve import load, resolve
 from graphflow.markup import source
 from nodes.turtlesim import TurtleSim
-from tests.cases import count
+from tests.cases import count, slow
 
 ENV = {"USER": "ada"}
 
@@ -514,6 +514,7 @@ def written(value: Any, path: source.Path = ()) -> source.Source:
     return found
 
 
+@slow
 @settings(derandomize=True, max_examples=count(few=150, full=600), deadline=None)
 @given(FILES | TREES, st.lists(WORDS, max_size=2))
 def test_any_tree_is_a_plan_or_a_list_of_problems(tree: Any, given: list[str]) -> None:

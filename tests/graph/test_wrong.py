@@ -97,6 +97,7 @@ def test_up_starts_nothing(name: str, project: Path, machine: Machine) -> None:
     assert not (project / "harm").exists()
 
 
+@slow
 def test_several_mistakes_come_together(
     project: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -150,6 +151,7 @@ def test_a_wrong_command_line(
     assert end.value.code == exits.USAGE
 
 
+@slow
 def test_what_is_right_passes(
     project: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -15,6 +15,7 @@ from graphflow.machines.cache import GraphCache
 from graphflow.system import host_name
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.process import ProcessToken
+from tests.cases import slow
 
 
 class Seen:
@@ -235,6 +236,7 @@ def test_an_answer_that_is_too_long_is_not_read(monkeypatch: pytest.MonkeyPatch)
     assert read(look(a={"log": {"lines": 5}})) == {}
 
 
+@slow
 def test_what_nodes_know_to_be_wrong() -> None:
     """Complaints of nodes are reported, bounded and whatever they contain."""
     reply = json.dumps({"nodes": {}, "complaints": {"/a": ["the remap x:=y matches no name of this node"]}}).encode()

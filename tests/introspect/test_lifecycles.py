@@ -14,6 +14,7 @@ from graphflow.introspect.lifecycles import ROUNDS, change, idle, managed_nodes,
 from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 from graphflow.msgs.lifecycle_msgs.srv import ChangeState
 from graphflow.testing import Graph
+from tests.cases import slow
 
 
 class Asked(View):
@@ -74,6 +75,7 @@ async def test_nodes_that_are_not_active(graph: Graph, number: int, told: str) -
     assert idle(view, 1.0).unknown == (["/lived"] if number == 99 else [])
 
 
+@slow
 async def test_many_silent_nodes(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """They cost a bounded time together and are all named, and hidden nodes are not asked at all."""
     names = [f"silent{i}" for i in range(ROUNDS + 5)]

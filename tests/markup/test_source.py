@@ -19,7 +19,7 @@ from graphflow.errors import GraphFileError, GraphflowError, Place
 from graphflow.markup import source
 from graphflow.markup.source import MAX_BYTES, MAX_DEPTH, MAX_VALUES, parse_value, read, read_file, scalar
 from graphflow.markup.tree import tree
-from tests.cases import count
+from tests.cases import count, slow
 
 
 def refused(text: str) -> str:
@@ -300,6 +300,7 @@ VALUES = st.recursive(
 )
 
 
+@slow
 @settings(derandomize=True, max_examples=count(few=37, full=150), deadline=None)
 @given(VALUES)
 def test_json_is_yaml(value: Any) -> None:

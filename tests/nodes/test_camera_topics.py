@@ -15,6 +15,7 @@ from graphflow.simulator import SimulatedRobot
 from graphflow.testing import Graph
 from graphflow.tf import Transforms
 from nodes.robot_simulator import RobotSimulator
+from tests.cases import slow
 
 
 class Listener(Node):
@@ -39,6 +40,7 @@ def drawn(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return calls
 
 
+@slow
 async def test_images(graph: Graph, drawn: list[str]) -> None:
     """Each kind is sent ten times a second to those who subscribe, in the frame of the lens."""
     await graph.start(RobotSimulator(world="empty", model="waffle"))

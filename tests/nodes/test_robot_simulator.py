@@ -18,6 +18,7 @@ from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
 from graphflow.tf import Transforms
 from nodes.robot_simulator import RobotSimulator
+from tests.cases import slow
 
 FORWARD = Twist(linear=Vector3(x=0.2))
 
@@ -26,6 +27,7 @@ class Listener(Node):
     tf = Transforms()
 
 
+@slow
 async def test_topics_and_rates(graph: Graph) -> None:
     """Each sensor has the rate of the real one, by simulated time."""
     await graph.start(RobotSimulator())
@@ -66,6 +68,7 @@ async def test_frames_of_the_parts(graph: Graph) -> None:
     assert places["wheel_right_link"] == pytest.approx((0.0, -0.08, 0.023))
 
 
+@slow
 async def test_contents(graph: Graph, tmp_path: Any) -> None:
     """Gravity and turns in the IMU's, the period in a scan, the current out of the battery; a touch at once."""
     file = tmp_path / "wall.yaml"

@@ -36,6 +36,7 @@ async def test_all_points_are_visited_in_order(graph: Graph, caplog: pytest.LogC
     assert poses.latest.linear_velocity == 0.0
 
 
+@slow
 async def test_a_follower_without_a_goal_says_so(graph: Graph) -> None:
     """Enabled without a goal, it refuses; without a scheduler, it drives to its goal and only warns."""
     await graph.start(TurtleSim(), follower := GoalFollower(namespace="/turtle1"))

@@ -6,8 +6,10 @@ from graphflow.msgs.turtlesim.msg import Pose
 from graphflow.testing import Graph
 from nodes.ten_turtles import TenTurtles
 from nodes.turtlesim import TurtleSim
+from tests.cases import slow
 
 
+@slow
 async def test_ten_turtles_drive_in_circles(graph: Graph) -> None:
     """Each gets a name from the simulator, moves on, and turns."""
     await graph.start(TurtleSim(), TenTurtles())

@@ -7,6 +7,7 @@ from graphflow.msgs.turtlesim.srv import Spawn, TeleportAbsolute
 from graphflow.testing import Graph
 from nodes.turtle_follower import TurtleFollower
 from nodes.turtlesim import TurtleSim
+from tests.cases import slow
 
 
 def test_it_has_what_its_parent_has() -> None:
@@ -23,6 +24,7 @@ def test_it_has_what_its_parent_has() -> None:
     assert {handler.name for handler in interface.handlers} == {"located", "control", "goal_moved"}
 
 
+@slow
 async def test_it_reaches_its_goal_and_follows_it(graph: Graph) -> None:
     """Wherever turtle1 is put, turtle2 ends within the tolerance of it."""
     await graph.start(TurtleSim())

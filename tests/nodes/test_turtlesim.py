@@ -20,6 +20,7 @@ from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.testing import Graph
 from nodes.turtle_world import SIZE
 from nodes.turtlesim import TurtleSim
+from tests.cases import slow
 
 TICK = 0.016
 BLUE, PEN = Color(r=69, g=86, b=255), Color(r=179, g=184, b=255)
@@ -498,6 +499,7 @@ async def test_a_background_set_from_outside_is_seen_at_once(graph: Graph) -> No
     assert find(await picture(graph), "rect")[0].get("fill") == "#c856ff"
 
 
+@slow
 async def test_a_colour_of_300_is_refused(graph: Graph) -> None:
     """By the service with a reason, by the constructor with an error; the old colour stays."""
     sim = TurtleSim()

@@ -63,6 +63,7 @@ RINGS = [
 ]
 
 
+@slow
 @pytest.mark.parametrize("case", some(RINGS, RINGS[0]), ids=lambda case: case[0])
 def test_two_processes_wait_for_each_other(machine: Machine, case: tuple[str, str, str, str]) -> None:
     """One of them tells it, with the lines of both."""

@@ -28,6 +28,7 @@ def test_a_ros_that_is_sourced_wins(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert sys.path[-1] == SITE
 
 
+@slow
 def test_a_source_tree_of_rclpy_does_not_win(tmp_path: Path) -> None:
     """It could not be imported before it is built; what is beside it can be."""
     (tmp_path / "rclpy").mkdir()

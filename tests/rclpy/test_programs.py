@@ -126,6 +126,7 @@ def start(workspace: Path, *words: str) -> subprocess.Popen[str]:
     )
 
 
+@slow
 @pytest.mark.real
 def test_a_main_that_nothing_calls(workspace: Path) -> None:
     """Is told at the end of the program, once."""
@@ -141,6 +142,7 @@ def test_a_main_that_nothing_calls(workspace: Path) -> None:
         process.wait()
 
 
+@slow
 @pytest.mark.real
 def test_a_module_that_a_build_would_leave_out(workspace: Path) -> None:
     """Runs, and is told."""
@@ -237,6 +239,7 @@ def test_programs_that_come_with_graphflow(workspace: Path) -> None:
     assert found.file == workspace / "src/tools/scripts/say"
 
 
+@slow
 @pytest.mark.real
 def test_what_comes_with_graphflow_runs(workspace: Path) -> None:
     """From a folder that knows nothing of it."""
@@ -246,6 +249,7 @@ def test_what_comes_with_graphflow_runs(workspace: Path) -> None:
     assert process.returncode == 2
 
 
+@slow
 @pytest.mark.real
 def test_source_trees_of_what_graphflow_has(workspace: Path) -> None:
     """They are not imported, and a note says so; the programs of the workspace run."""
@@ -280,6 +284,7 @@ def test_messages_of_messages(workspace: Path) -> None:
         assert said in output
 
 
+@slow
 @pytest.mark.real
 def test_a_field_that_does_not_fit_is_told_with_what_ros_does(workspace: Path) -> None:
     """Which looks later."""
@@ -289,6 +294,7 @@ def test_a_field_that_does_not_fit_is_told_with_what_ros_does(workspace: Path) -
     assert output.strip().rpartition("\n")[2].endswith("ROS_PYTHON_CHECK_FIELDS=0")
 
 
+@slow
 @pytest.mark.real
 def test_modules_of_rclpy_are_there_with_it(workspace: Path) -> None:
     """Programs use them that import rclpy alone; what is none is none."""
@@ -298,6 +304,7 @@ def test_modules_of_rclpy_are_there_with_it(workspace: Path) -> None:
     assert output == "InvalidHandle False <class 'rclpy.node.Node'>\n"
 
 
+@slow
 @pytest.mark.real
 def test_a_package_of_a_name_of_ros(workspace: Path) -> None:
     """It hides the other, which is told in place of what it lacks."""
@@ -313,6 +320,7 @@ def test_a_package_of_a_name_of_ros(workspace: Path) -> None:
     assert said.endswith(f"note: your package {own} hides ROS 2's std_msgs; rename yours, there and in its files\n")
 
 
+@slow
 @pytest.mark.real
 def test_a_file_of_a_name_of_ros(workspace: Path) -> None:
     """It is named before it runs, and where the error is shown."""
@@ -336,6 +344,7 @@ def test_scripts_run_and_mistakes_end_with_2(workspace: Path) -> None:
         assert (output, process.returncode) == (text, code)
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize(
     ("line", "told", "note"),
@@ -378,6 +387,7 @@ def test_an_error_is_shown_from_the_programs_own_code_on(
     assert "graphflow" not in said
 
 
+@slow
 def test_a_program_without_an_end_of_its_own_ends_too() -> None:
     """A node that nobody has destroyed, and a context that nobody has shut down."""
     code = (
@@ -414,6 +424,7 @@ def test_a_daemon_that_spins_can_be_waited_for_at_the_end(order: str) -> None:
     assert (ended.stdout, ended.returncode) == ("False\n", 0), ended.stderr
 
 
+@slow
 def test_a_thread_that_spins_outlives_the_main_thread() -> None:
     """Its callbacks run until a signal ends it; the network is left then."""
     code = (

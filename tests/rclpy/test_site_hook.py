@@ -41,6 +41,7 @@ def python(folder: Path, code: str) -> str:
     return ran.stdout or ran.stderr.strip().rpartition("\n")[2]
 
 
+@slow
 @pytest.mark.parametrize("folder", ["", "src", "src/lamp", "src/lamp/test"])
 def test_what_lies_around_can_be_imported(workspace: Path, folder: str) -> None:
     """Wherever in the workspace the shell is: code, and messages, also where folders look like packages."""
@@ -50,6 +51,7 @@ def test_what_lies_around_can_be_imported(workspace: Path, folder: str) -> None:
     )
 
 
+@slow
 def test_a_program_finds_what_lies_around_it(workspace: Path, tmp_path: Path) -> None:
     """Wherever the shell is; what lies nowhere is not found."""
     run = f"import runpy, sys; sys.argv = [{str(workspace / 'src/lamp/lamp/node.py')!r}]; runpy.run_path(sys.argv[0])"

@@ -38,6 +38,7 @@ CASES = count(few=30, full=180)
 """Programs that are tried."""
 
 
+@slow
 @limit(CASES)
 @cases(CASES)
 @given(SETTINGS, st.lists(STEPS, min_size=8, max_size=40))
@@ -142,6 +143,7 @@ def test_cancelling_before_execution_begins() -> None:
     simulate(story, 2, delay=(0.0, 0.02))
 
 
+@slow
 def test_cancelling_in_a_flood_of_feedback() -> None:
     """A body that tells more than its client can read is cancelled as any other; the oldest feedback is dropped."""
 

@@ -20,6 +20,7 @@ from graphflow.runtime.actions.goal_handles import ClientGoalHandle
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.testing.simulation import World, simulate
+from tests.cases import slow
 from tests.runtime.action_model import CANCELED, EXECUTING, LOST, RULES, Asker, Operator, SendGoal, now
 
 
@@ -210,6 +211,7 @@ def test_a_body_that_ends_when_its_goal_is_forgotten() -> None:
     assert background_errors(story) == []
 
 
+@slow
 def test_a_body_that_outlives_its_server() -> None:
     """A body that goes on when its node has stopped ends without an error in the background."""
 
@@ -256,6 +258,7 @@ def test_a_client_that_is_closed_while_a_block_is_left() -> None:
     simulate(story)
 
 
+@slow
 def test_a_sender_that_is_cancelled_when_its_node_has_stopped() -> None:
     """It gets its CancelledError."""
 

@@ -13,6 +13,7 @@ from graphflow import InvalidName, Node, Param, ParameterError
 from graphflow.names import Remap
 from graphflow.runtime.node_arguments import instead_of, rules_of
 from graphflow.runtime.node_core import core_of
+from tests.cases import slow
 from tests.conftest import LIMIT
 
 WANTED = 'remap=["goal:=/turtle1/pose"]'
@@ -81,6 +82,7 @@ def test_a_parameter_of_that_name() -> None:
 TALK = "import graphflow\n\nclass Talk(graphflow.Node):\n    pass\n\n"
 
 
+@slow
 @pytest.mark.parametrize(
     ("line", "told"),
     [

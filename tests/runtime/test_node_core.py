@@ -37,6 +37,7 @@ from graphflow.runtime.node_core import core_of
 from graphflow.runtime.run import serve
 from graphflow.testing import Graph
 from graphflow.transport.memory import MemorySession
+from tests.cases import slow
 from tests.runtime.cast import Talker
 
 
@@ -280,6 +281,7 @@ async def test_what_is_not_running_has_no_context(graph: Graph) -> None:
         Talker().clock  # noqa: B018
 
 
+@slow
 async def test_a_start_that_fails_leaves_nothing_open(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """It raises the error, and announcements are withdrawn."""
 

@@ -19,6 +19,7 @@ from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.wire import typehash
 from graphflow.wire.liveliness import Kind
+from tests.cases import slow
 from tests.runtime.cast import Adder
 
 
@@ -27,6 +28,7 @@ async def describe(graph: Graph, node: str, name: str, hash_: str = "") -> Any:
     return await graph.call(GetTypeDescription, f"{node}/get_type_description", request)
 
 
+@slow
 @pytest.mark.parametrize("name", ["geometry_msgs/msg/PoseStamped", "example_interfaces/srv/AddTwoInts"])
 async def test_the_description_is_what_was_hashed(graph: Graph, name: str) -> None:
     """A node describes the types of its endpoints; the description gives the hash again."""

@@ -274,6 +274,7 @@ def test_the_workers_of_a_process_pool_end_too(machine: Machine, tmp_path: Path)
     until(lambda: not psutil.pid_exists(worker) or psutil.Process(worker).status() == psutil.STATUS_ZOMBIE)
 
 
+@slow
 @pytest.mark.real
 def test_a_second_signal_ends_a_process_that_waits_for_a_thread(machine: Machine, tmp_path: Path) -> None:
     """As the reminder says."""

@@ -9,6 +9,7 @@ import pytest
 
 from graphflow.errors import NoCamera
 from graphflow.simulator import Simulation, simulate
+from tests.cases import slow
 
 
 @pytest.fixture
@@ -23,6 +24,7 @@ def simulation() -> Simulation:
     return made
 
 
+@slow
 def test_an_image(simulation: Simulation) -> None:
     """It has the camera's size; sky is above, floor below, and pillars are blue."""
     image = simulation.robots[""].image()
@@ -32,6 +34,7 @@ def test_an_image(simulation: Simulation) -> None:
     assert (image[:, :, 2].astype(int) - image[:, :, 0] > 30).any()
 
 
+@slow
 def test_depths(simulation: Simulation) -> None:
     """The nearest pillar is about as far as the scanner says; the sky is infinitely far."""
     robot = simulation.robots[""]

@@ -14,6 +14,7 @@ from graphflow.simulator.mjcf import TICK
 from graphflow.simulator.robot import Robot
 from graphflow.simulator.simulation import SimulatedRobot, Simulation
 from graphflow.simulator.world import World
+from tests.cases import slow
 
 ROBOTS = {name: read_robot(find(name, "robots", Path())) for name in ("burger", "waffle", "rover")}
 
@@ -33,6 +34,7 @@ def drive(simulation: Simulation, seconds: float, *commands: float) -> Simulated
     return robot
 
 
+@slow
 @pytest.mark.parametrize("model", ROBOTS)
 def test_a_robot_drives_as_commanded(model: str) -> None:
     """Straight on and around, to a few percent; its odometry knows nearly where it is."""
@@ -124,6 +126,7 @@ def test_several_robots() -> None:
     assert abs(b.pose.yaw) < 0.01 < a.pose.yaw
 
 
+@slow
 def test_the_same_seed_gives_the_same_run() -> None:
     """Bit for bit, noise included; another seed does not."""
 

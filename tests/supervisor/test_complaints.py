@@ -105,6 +105,7 @@ def test_a_remap_of_nothing(machine: Machine, project: Path, remap: str, told: s
     )
 
 
+@slow
 def test_where_a_name_comes_from(machine: Machine, project: Path) -> None:
     """The namespace and the rule, each with its line. navigation2#3935."""
     text = "group:\n  namespace: room\n  nodes:\n    b: {class: nodes.listener:Listener, remap: {chatter: news}}\n"

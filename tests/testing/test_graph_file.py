@@ -11,6 +11,7 @@ from graphflow.errors import CallError, GraphFileError, GraphflowError
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.turtlesim.msg import Pose
 from graphflow.testing import Graph
+from tests.cases import slow
 from tests.conftest import PROJECT
 
 GRAPHS = PROJECT / "graphs"
@@ -25,6 +26,7 @@ async def test_nodes_parameters_and_arguments(graph: Graph) -> None:
     assert len(heard) == 4
 
 
+@slow
 @pytest.mark.parametrize(
     ("arguments", "distance"), [({}, 0.5), ({"target": "carrot1"}, 2.2), ({"target": "carrot1", "moves": True}, 99.0)]
 )
@@ -37,6 +39,7 @@ async def test_the_tf2_tutorial(graph: Graph, arguments: dict[str, object], dist
     assert len(nodes) == 5
 
 
+@slow
 async def test_time_travel(graph: Graph) -> None:
     """With a delay the second turtle drives to where the first was."""
     from graphflow.msgs.geometry_msgs.msg import Twist, Vector3

@@ -111,6 +111,7 @@ def test_a_failing_node_fails_the_test(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(["*ValueError: broken*"])
 
 
+@slow
 def test_tests_that_would_pass_in_vain(pytester: pytest.Pytester) -> None:
     """Fail: where an assertion has failed in a handler, where an `await` is missing, and the `async` of a test."""
     result = run(
@@ -176,6 +177,7 @@ def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pyte
     )
 
 
+@slow
 @pytest.mark.parametrize("plugin", ["timeout", "no:timeout"])
 def test_a_limit_of_its_own(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, plugin: str) -> None:
     """Is that of pytest-timeout's mark, whether that is installed or not."""
@@ -298,6 +300,7 @@ def test_a_failing_test_is_told_what_has_not_happened(pytester: pytest.Pytester)
     )
 
 
+@slow
 def test_an_error_about_a_line_of_the_test(pytester: pytest.Pytester) -> None:
     """The report has only the error."""
     result = run(
@@ -365,6 +368,7 @@ TAKES_ALL = """
 """Another plugin that runs all asynchronous tests, in loops that it closes, as pytest-asyncio does in its auto mode."""
 
 
+@slow
 def test_another_plugin_may_run_a_test_with_the_fixture(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -423,6 +427,7 @@ def test_nodes_of_another_loop_are_refused(pytester: pytest.Pytester) -> None:
     )
 
 
+@slow
 @pytest.mark.parametrize("conftest", ["", TAKES_ALL], ids=["ours", "another's"])
 def test_generated_examples_have_a_graph_each(pytester: pytest.Pytester, conftest: str) -> None:
     """A Hypothesis test may be asynchronous and use `graph`: examples do not share state."""
@@ -508,6 +513,7 @@ def test_each_test_has_a_loop_of_its_own(pytester: pytest.Pytester) -> None:
     result.assert_outcomes(passed=2)
 
 
+@slow
 def test_the_plugin_is_light() -> None:
     """Every pytest run loads it, so it imports no slow module."""
     code = "import graphflow.testing.plugin, json, sys; print(json.dumps(sorted(sys.modules)))"

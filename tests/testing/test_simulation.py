@@ -26,7 +26,7 @@ from graphflow.msgs.std_msgs.msg import Int32
 from graphflow.msgs.std_srvs.srv import Trigger
 from graphflow.runtime.node_core import core_of
 from graphflow.testing.simulation import Standstill, World, simulate
-from tests.cases import count
+from tests.cases import count, slow
 
 
 class Counter(Node):
@@ -59,6 +59,7 @@ async def listen(world: World) -> list[tuple[int, float]]:
     return hearer.heard
 
 
+@slow
 def test_time_passes_at_once_and_the_same_way_every_time() -> None:
     """A seed decides everything; another seed decides otherwise."""
     first = simulate(listen, 1, delay=(0.0, 0.05), loss=0.2)
@@ -126,6 +127,7 @@ class Worker(Node):
         return Trigger.Response(success=True)
 
 
+@slow
 @pytest.mark.parametrize("seed", range(count(few=8, full=20)))
 def test_a_group_never_has_more_runs_than_slots(seed: int) -> None:
     """At the end all slots are free, whatever the order of arrivals, failures and releases."""
@@ -244,6 +246,7 @@ class Polite(Neighbour):
         return Trigger.Response(success=True)
 
 
+@slow
 @pytest.mark.parametrize("seed", range(count(few=8, full=20)))
 @pytest.mark.parametrize("cls", [Neighbour, Polite])
 def test_a_ring_is_reported_once_and_legal_calls_never(

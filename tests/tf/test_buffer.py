@@ -18,6 +18,7 @@ from graphflow.msgs.tf2_msgs.msg import TFMessage
 from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 from graphflow.testing import Graph
 from graphflow.tf import Transform, Transforms
+from tests.cases import slow
 
 LATCHED = Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)
 
@@ -49,6 +50,7 @@ def warnings(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [r.getMessage() for r in caplog.records if r.levelno == logging.WARNING]
 
 
+@slow
 async def test_lookups(graph: Graph) -> None:
     """A chain of moving and static frames, at the latest time, and at one between two transforms."""
     listener = Listener()

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from transforms3d import euler, quaternions
 
 from graphflow.tf.poses import IDENTITY, Pose, from_rpy, multiply, rotate, slerp, to_rpy
+from tests.cases import slow
 
 LEFT = (0.0, 0.0, math.sin(math.pi / 4), math.cos(math.pi / 4))
 """A quarter turn to the left."""
@@ -48,6 +49,7 @@ def test_rotations_are_those_of_the_library(a: tuple[float, ...], b: tuple[float
     assert rotate(a, v) == pytest.approx(quaternions.rotate_vector(v, one), abs=1e-9)  # type: ignore[arg-type]
 
 
+@slow
 @given(angles, angles, angles)
 def test_roll_pitch_and_yaw_are_those_of_the_library(roll: float, pitch: float, yaw: float) -> None:
     """There as its `sxyz`, and back."""

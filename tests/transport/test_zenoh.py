@@ -16,6 +16,7 @@ from graphflow.transport.base import Answer
 from graphflow.transport.inbox import Inbox
 from graphflow.transport.zenoh import ZenohSession
 from graphflow.wire.gid import gid
+from tests.cases import slow
 from tests.conftest import LIMIT, Machine
 from tests.until import eventually, until
 
@@ -84,6 +85,7 @@ def test_a_running_talker_is_exactly_what_the_specification_says(raw: zenoh.Sess
     assert sequences == list(range(sequences[0], sequences[0] + len(sequences)))
 
 
+@slow
 def test_a_node_has_the_endpoints_every_ros_node_has(raw: zenoh.Session, machine: Machine) -> None:
     """/rosout latched for ten seconds, /parameter_events and the services, with ROS 2's profiles and hashes."""
     found = [t.split("/", 9) for t in tokens(raw, machine.domain)]
@@ -116,6 +118,7 @@ def test_a_node_has_the_endpoints_every_ros_node_has(raw: zenoh.Session, machine
     assert rest["%robot1%talker%get_parameters"] == ("SS", f"{get}/::,1000:,:,:,,")
 
 
+@slow
 def test_a_foreign_client_is_answered_as_ros_2_answers(raw: zenoh.Session, machine: Machine) -> None:
     """A query with rmw_zenoh's settings gets one reply: CDR, and its own sequence number and GID beside it."""
     key = f"{machine.domain}/robot1/talker/get_parameters/rcl_interfaces::srv::dds_::GetParameters_/{GET_PARAMETERS}"
@@ -138,6 +141,7 @@ def test_a_foreign_client_is_answered_as_ros_2_answers(raw: zenoh.Session, machi
     assert struct.pack("<d", 50.0) in payload
 
 
+@slow
 def test_a_malformed_request_gets_an_error_and_the_service_goes_on(raw: zenoh.Session, machine: Machine) -> None:
     """Whoever sends rubbish is told so; nothing else changes."""
     key = f"{machine.domain}/robot1/talker/get_parameters/rcl_interfaces::srv::dds_::GetParameters_/{GET_PARAMETERS}"

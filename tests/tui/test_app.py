@@ -16,6 +16,7 @@ from tests.tui.stage import record, stage
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 @pytest.mark.parametrize(
     ("event", "text"),
     [

@@ -49,6 +49,7 @@ async def test_borders_are_dragged(key: str, axis: str) -> None:
             await s.until(lambda: frames[a].size.height == before.height - 4)
 
 
+@slow
 async def test_views_keep_their_state_while_another_window_is_shown() -> None:
     """A view is not recreated when its window is left and shown again."""
     async with stage(Content("nodes"), Content("log")) as s:

@@ -26,7 +26,7 @@ from graphflow.msgs.turtlesim.msg import Pose
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views.topics import plot
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.tui.nodes import Listener, Talker
 from tests.tui.stage import Stage, record, stage
 from tests.tui.views.nodes.test_crash import TRACE
@@ -102,6 +102,7 @@ SETUPS: dict[str, Setup] = {
 }
 
 
+@slow
 @pytest.mark.parametrize("view", sample(list(VIEWS)))
 async def test_a_view(view: str, graph: Graph, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The screen equals the recorded one."""

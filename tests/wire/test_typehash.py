@@ -14,6 +14,7 @@ from graphflow.msgs import registry
 from graphflow.wire import idl
 from graphflow.wire.schema import Message
 from graphflow.wire.typehash import referenced, type_description, type_hash, type_id
+from tests.cases import slow
 
 from .messages import definitions
 
@@ -146,6 +147,7 @@ def holds_char(name: str) -> bool:
     return any(field.type.base == "char" for part in parts for field in part.fields)
 
 
+@slow
 @pytest.mark.parametrize(
     ("profile", "store"),
     [("jazzy", Stores.ROS2_JAZZY), ("kilted", Stores.ROS2_KILTED), ("lyrical", Stores.ROS2_LYRICAL)],

@@ -17,7 +17,7 @@ from graphflow.bag.formats import mcap_file
 from graphflow.bag.formats.mcap_file import McapFile
 from graphflow.bag.reader import Bag
 from graphflow.errors import BagError
-from tests.cases import cases, count
+from tests.cases import cases, count, slow
 
 
 def plain_mcap(path: Path, times: list[int], **options: Any) -> Path:
@@ -71,6 +71,7 @@ def test_a_bag_that_ends_anywhere(tmp_path: Path) -> None:
     assert most == 30
 
 
+@slow
 @cases(count(few=60, full=1500))
 @given(st.data())
 def test_a_bag_with_bytes_that_are_wrong(tmp_path_factory: pytest.TempPathFactory, data: st.DataObject) -> None:

@@ -20,6 +20,7 @@ from graphflow.errors import BagError
 from graphflow.msgs import registry
 from graphflow.qos import Durability
 from tests.bag.cast import START
+from tests.cases import slow
 
 RULE = "=" * 80 + "\nMSG: "
 HEADER = f"{RULE}std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"
@@ -125,6 +126,7 @@ def test_a_type_that_has_changed(tmp_path: Path) -> None:
     assert (said.message.x, said.message.y, said.message.z) == (1.0, 0.0, 3.0)
 
 
+@slow
 def test_types_that_are_not_known_here(tmp_path: Path) -> None:
     """As the bag defines them; a bag that is made of it can be read by itself."""
     store = Store.of("ros1_lab_msgs/msg/Thing", LAB)
@@ -205,6 +207,7 @@ def test_names_that_are_none(tmp_path: Path, name: str) -> None:
     assert not hasattr(sys, "executed")
 
 
+@slow
 @pytest.mark.parametrize("form", ["", "BZ2", "LZ4"])
 def test_damaged_ones(tmp_path: Path, form: str) -> None:
     """Whatever byte is another, it is a bag or an error of a bag."""

@@ -143,6 +143,7 @@ def test_two_plans(machine: Machine) -> None:
     assert machine.look("plan", GRAPHS[0], "--diff", GRAPHS[0]) == ""
 
 
+@slow
 def test_checks_for_programs(machine: Machine, tmp_path: Path) -> None:
     """Problems and deadlocks with their places; the exit code is the same."""
     nothing: dict[str, list[str]] = {"problems": [], "remarks": [], "deadlocks": [], "unread": []}
@@ -185,6 +186,7 @@ def test_the_schema(machine: Machine) -> None:
     assert json.loads(machine.look("schema"))["title"] == "A graph file of graphflow"
 
 
+@slow
 def test_a_remap_the_wrong_way_round(machine: Machine, tmp_path: Path) -> None:
     """The suggestion has both names in their order."""
     file = tmp_path / "g.yaml"
@@ -193,6 +195,7 @@ def test_a_remap_the_wrong_way_round(machine: Machine, tmp_path: Path) -> None:
     assert "no topic or service '/words'; it is the other way round, from the node's name: chatter: /words" in text
 
 
+@slow
 def test_a_wildcard_that_matches_nothing(machine: Machine, tmp_path: Path) -> None:
     """A wildcard rule that matches nothing is a mistake, as any remap rule; one that matches is not."""
     file = tmp_path / "g.yaml"
@@ -232,6 +235,7 @@ def test_the_source_of_rclpy_nodes_is_checked(machine: Machine, tmp_path: Path) 
     assert "there is no file none.py" in machine.look("check", "none.py", cwd=tmp_path, code=2)
 
 
+@slow
 def test_a_folder_of_a_graphs_name(machine: Machine, tmp_path: Path) -> None:
     """The graph is checked, and the folder with a slash."""
     for folder in ("graphs", "own"):

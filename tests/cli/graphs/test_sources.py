@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.cases import slow
 from tests.conftest import PROJECT, Machine
 
 NODES = """\
@@ -52,6 +53,7 @@ def test_source_without_mistakes(here: Machine, tmp_path: Path, path: str, told:
     assert here.look("check", path, cwd=tmp_path) == told
 
 
+@slow
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
@@ -71,6 +73,7 @@ def test_mistakes_in_source(here: Machine, tmp_path: Path, old: str, new: str, t
     assert told.rpartition(": ")[2] in found["problems"][0]["message"]
 
 
+@slow
 def test_deadlocks_in_source(machine: Machine) -> None:
     """A class that waits for itself needs no graph for that."""
     text = machine.look("check", str(PROJECT / "nodes/deadlock/self_call.py"), code=1)
@@ -95,6 +98,7 @@ def test_a_node_where_a_graph_is_wanted(here: Machine, tmp_path: Path, verb: str
     assert here.look(verb, "ros/move.py", cwd=tmp_path, code=2).endswith("run it with: graphflow run ros/move.py\n")
 
 
+@slow
 def test_slips_in_source(here: Machine, tmp_path: Path) -> None:
     """Slips are remarks, of a file and of a graph, and do not change the exit code."""
     source = NODES.replace(

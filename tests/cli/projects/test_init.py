@@ -110,6 +110,7 @@ def test_nothing_is_overwritten(machine: Machine, tmp_path: Path) -> None:
     assert (tmp_path / "lab" / "README.md").read_text() == "mine"
 
 
+@slow
 def test_the_folder_itself(machine: Machine, tmp_path: Path) -> None:
     """The current folder is filled if it is empty; otherwise the error says how to create a new one."""
     (tmp_path / "lab").mkdir()

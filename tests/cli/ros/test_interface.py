@@ -204,6 +204,7 @@ def test_a_type_checker_finds_the_stubs(mylab: Path) -> None:
     assert "Found 1 error" in done.stdout
 
 
+@slow
 def test_types_are_listed(mylab: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Types are listed by kind and by package, including the project's own."""
     runner = CliRunner()

@@ -62,6 +62,7 @@ def test_xml(machine: Machine, tmp_path: Path) -> None:
     assert "already exists" in machine.look("launch", "convert", str(file), "-o", str(target), code=2)
 
 
+@slow
 def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
     """The error has the reason, or the right command."""
     (tmp_path / "a.py").write_text("import os\nos._exit(3)\n")
@@ -131,6 +132,7 @@ def test_debug_is_not_detach(machine: Machine, tmp_path: Path) -> None:
     assert "note: -d is ROS's --debug, which has no effect here; --detach leaves the graph in the background" in told
 
 
+@slow
 def test_in_the_background(machine: Machine, tmp_path: Path) -> None:
     """`--detach` works as with `up`."""
     file = tmp_path / "a.launch.xml"

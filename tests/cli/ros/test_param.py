@@ -120,6 +120,7 @@ def test_dump_and_load_restore_everything(machine: Machine, tmp_path: Path) -> N
     assert machine.look("param", "dump", "/robot") == DUMP
 
 
+@slow
 @pytest.mark.real
 def test_a_wrong_value_in_a_file_fails_alone(machine: Machine, tmp_path: Path) -> None:
     """The other values are set; the reason is printed, and the exit code is 1."""
@@ -161,6 +162,7 @@ def test_describe_and_delete(machine: Machine, tmp_path: Path) -> None:
     assert "Deleting parameter failed: parameter 'title' belongs to the node" in text
 
 
+@slow
 @pytest.mark.real
 def test_a_node_starts_with_a_params_file(machine: Machine, tmp_path: Path) -> None:
     """The command line overrides the file; a wildcard's unknown parameter is skipped with a note."""
@@ -174,6 +176,7 @@ def test_a_node_starts_with_a_params_file(machine: Machine, tmp_path: Path) -> N
     assert machine.look("param", "get", "/left/arm", "count") == "Integer value is: 8\n"
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize(
     ("text", "problem"),

@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 
 from graphflow.rclpy import enabling
+from tests.cases import slow
 from tests.conftest import Machine
 
 
+@slow
 def test_python_is_let_import_it_and_not(machine: Machine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One file is written and removed, and named each time."""
     file = tmp_path / enabling.FILE
@@ -38,6 +40,7 @@ def test_a_sourced_ros_2_is_told(machine: Machine, monkeypatch: pytest.MonkeyPat
     assert "/opt/ros/rclpy/__init__.py" in machine.look("rclpy", "status")
 
 
+@slow
 def test_a_file_that_uses_ros_is_run_as_it_stands(machine: Machine, tmp_path: Path) -> None:
     """A program written for rclpy runs unchanged, with its own arguments and exit."""
     file = tmp_path / "hello.py"

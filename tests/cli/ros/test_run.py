@@ -58,6 +58,7 @@ def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
     assert "-r __node:=NAME" in text
 
 
+@slow
 @pytest.mark.parametrize(
     ("words", "code", "expected"),
     sample(
@@ -84,6 +85,7 @@ def test_what_is_wrong_is_said_in_a_line(machine: Machine, words: list[str], cod
     assert text.count("\n") == 1
 
 
+@slow
 def test_an_error_of_the_users_own_code_shows_its_traceback(machine: Machine, tmp_path: Path) -> None:
     """Whatever the user's code raises reaches the user."""
     shutil.copy(PROGRAMS / "run" / "no_camera.py", tmp_path)
@@ -165,6 +167,7 @@ def test_signals_that_come_together_are_one(machine: Machine) -> None:
     assert "asked twice" not in node.text
 
 
+@slow
 def test_a_forgotten_super_is_named(machine: Machine, tmp_path: Path) -> None:
     """The likeliest mistake in a constructor is explained in one sentence."""
     shutil.copy(PROGRAMS / "run" / "bare.py", tmp_path)
@@ -202,6 +205,7 @@ def test_a_remap_that_cannot_be(machine: Machine, words: list[str], told: str) -
     assert told in machine.run("run", "talker", "--ros-args", *words, code=2)
 
 
+@slow
 def test_a_launch_file(machine: Machine, tmp_path: Path) -> None:
     """Running it would only define a function: the error names the verb that starts it."""
     file = tmp_path / "robot.launch.py"
@@ -230,6 +234,7 @@ def test_where_logs_go(machine: Machine) -> None:
     assert node.end() == 0
 
 
+@slow
 def test_a_file_that_runs_itself(machine: Machine, tmp_path: Path) -> None:
     """A file that calls `graphflow.run` for itself is run as a program, with the command's arguments."""
     (tmp_path / "one.py").write_text(

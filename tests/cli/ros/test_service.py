@@ -80,6 +80,7 @@ def test_a_service_is_waited_for(standing: Machine) -> None:
     assert text.startswith("waiting for service to become available...\nerror: no node offers the service")
 
 
+@slow
 def test_a_call_that_is_repeated(standing: Machine) -> None:
     """`--rate` calls repeatedly until Ctrl-C, which is not a failure."""
     calls = standing.start("service", "call", ADD, TYPE, "{a: 4, b: 5}", "--rate", "50")

@@ -56,6 +56,7 @@ def test_programs_with_windows(machine: Machine, words: tuple[str, ...], told: s
     assert told in machine.look(*words, code=2)
 
 
+@slow
 def test_teleoperation_without_a_terminal(machine: Machine) -> None:
     """It says where to run it."""
     told = machine.run("run", "turtlebot3_teleop", "teleop_keyboard", code=1)

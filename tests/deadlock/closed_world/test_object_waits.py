@@ -16,6 +16,7 @@ from graphflow import Node, subscription
 from graphflow.msgs.geometry_msgs.msg import Pose, PoseStamped
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
+from tests.cases import slow
 from tests.deadlock.cast import Caplog, Robot, reports, say
 from tests.flat import flat
 
@@ -206,6 +207,7 @@ class Gathers(KeepsState):
         await asyncio.gather(self.state.ready.wait(), self.clock.sleep(0.1))
 
 
+@slow
 @pytest.mark.parametrize(
     ("program", "what", "how"),
     [

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from graphflow.introspect.drawing.layered import Box, Drawing, draw
-from tests.cases import cases, count
+from tests.cases import cases, count, slow
 
 N = 9
 GRAPHS = st.lists(st.tuples(st.integers(0, N - 1), st.integers(0, N - 1)), max_size=20)
@@ -44,6 +44,7 @@ def reached(drawing: Drawing, source: str) -> set[str]:
     return found
 
 
+@slow
 @cases(count(few=40, full=150))
 @given(GRAPHS)
 def test_whatever_the_graph(pairs: list[tuple[int, int]]) -> None:

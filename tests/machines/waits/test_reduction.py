@@ -457,6 +457,7 @@ SCHEDULES = st.lists(st.integers(0, 11), max_size=15)
 long = limit(CASES)
 
 
+@slow
 @long
 @cases(CASES)
 @given(systems(), SCHEDULES)

@@ -29,7 +29,7 @@ from graphflow.machines.waits.wait_graph import (
     WaitGraph,
 )
 from graphflow.machines.waits.wait_graph_json import DEEPEST, VERSION, from_json, to_json
-from tests.cases import count
+from tests.cases import count, slow
 
 TEXT = st.text(max_size=5)
 TEXTS = st.lists(TEXT, max_size=3).map(tuple)
@@ -102,6 +102,7 @@ JUNK: st.SearchStrategy[Any] = st.recursive(
 )
 
 
+@slow
 @settings(deadline=None, derandomize=True)
 @given(PICTURES)
 def test_round_trip(picture: WaitGraph) -> None:
@@ -136,6 +137,7 @@ def damaged(draw: st.DrawFn) -> Any:
         return data
 
 
+@slow
 @settings(deadline=None, derandomize=True, max_examples=count(few=125, full=500))
 @given(damaged() | JUNK | JUNK.map(one))
 @example(one(["call", "id"]))
@@ -204,6 +206,7 @@ def nested(levels: int) -> list[Any]:
     return data
 
 
+@slow
 def test_how_deep_conditions_go() -> None:
     """Conditions inside each other are written and read to a limit, far below that of the stack."""
     deep: Condition = Call("c", "/add")

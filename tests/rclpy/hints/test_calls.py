@@ -23,6 +23,7 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
+from tests.cases import slow
 from tests.rclpy.hinted import hint_of
 
 SUPER: Any = super
@@ -118,6 +119,7 @@ def checked(node: Any) -> None:
     node.set_parameters([Parameter("n", value=2)])
 
 
+@slow
 @pytest.mark.parametrize(("make", "who", "how"), CALLBACKS)
 def test_callbacks_that_take_other_arguments(
     network: Any, capfd: pytest.CaptureFixture[str], make: Callable[[Any], Any], who: str, how: str

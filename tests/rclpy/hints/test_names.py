@@ -13,9 +13,11 @@ import rclpy
 from graphflow.msgs import registry
 from graphflow.rclpy.messages import finder
 from rclpy.node import Node
+from tests.cases import slow
 from tests.rclpy.hinted import hint_of
 
 
+@slow
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [

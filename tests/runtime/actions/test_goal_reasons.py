@@ -10,6 +10,7 @@ from graphflow import Abort, GoalRejected, Node, action
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.runtime.actions import goal_reasons
 from graphflow.testing import Graph
+from tests.cases import slow
 from tests.runtime.cast import Server, pair
 
 GOAL = bytes(range(16))
@@ -93,6 +94,7 @@ async def test_a_goal_that_is_wanted(graph: Graph) -> None:
         assert (await (await asker.order(3)).result()) == Fibonacci.Result()
 
 
+@slow
 @pytest.mark.parametrize(
     ("policy", "goals", "reason"),
     [("reject", 2, "another goal is running, and policy='reject'"), ("queue", 18, "16 goals are waiting already")],

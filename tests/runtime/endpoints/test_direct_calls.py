@@ -18,6 +18,7 @@ from graphflow.testing import Graph
 from graphflow.transport.inbox import REQUESTS_BOUND, Inbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Entity, Kind
+from tests.cases import slow
 
 REQUEST = AddTwoInts.Request(a=2, b=3)
 
@@ -60,6 +61,7 @@ async def asker(graph: Graph) -> tuple[Asker, ServiceClient[Any, Any], list[int]
     return node, client, queries
 
 
+@slow
 async def test_a_call_to_a_graphflow_server_is_no_query(graph: Graph) -> None:
     """Whichever of the two came first."""
     _, client, queries = await asker(graph)

@@ -19,6 +19,7 @@ from graphflow.testing import Graph
 from graphflow.transport.inbox import Inbox
 from graphflow.wire import attachment
 from graphflow.wire.liveliness import Kind
+from tests.cases import slow
 from tests.runtime.cast import Adder, Log, SlowAdder, begun, client_of
 
 pytestmark = pytest.mark.usefixtures("way")
@@ -76,6 +77,7 @@ async def test_a_server_that_comes_in_time(graph: Graph) -> None:
     assert (await call).sum == 3
 
 
+@slow
 async def test_the_deadline_passes(graph: Graph) -> None:
     """CallTimeout comes when the clock has reached the deadline and not before; it is a TimeoutError too."""
     await graph.start(SlowAdder())
@@ -354,6 +356,7 @@ async def test_waiting_for_a_server_ends_with_the_client(graph: Graph) -> None:
         await ready
 
 
+@slow
 async def test_an_error_text_clears_no_screen(graph: Graph) -> None:
     """Escape sequences in a handler's error, which may be another process's data, are spelt out; line breaks stay."""
 

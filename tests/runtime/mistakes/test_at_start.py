@@ -14,6 +14,7 @@ from graphflow.runtime.mistakes.at_start import warn_at_start
 from graphflow.runtime.mistakes.source.module_variables import Exchanged
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
+from tests.cases import slow
 
 
 class Robot(Node):
@@ -25,6 +26,7 @@ class Robot(Node):
         self.crumbs_on_the_way.append(1)
 
 
+@slow
 @pytest.mark.parametrize("is_alone", [True, False])
 def test_slips_and_shared_lists(caplog: pytest.LogCaptureFixture, is_alone: bool) -> None:
     """Both are warnings; a node that is alone in its process shares nothing."""

@@ -12,6 +12,7 @@ from graphflow.runtime.context import Context
 from graphflow.runtime.mistakes.echoes import LOOP, Echo
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph, ManualClock
+from tests.cases import slow
 
 Caplog = pytest.LogCaptureFixture
 
@@ -81,6 +82,7 @@ class Looping(Node):
             self.number.publish(message)
 
 
+@slow
 @pytest.mark.parametrize("others", [0, 1])
 async def test_a_node_that_feeds_itself(graph: Graph, caplog: Caplog, others: int) -> None:
     """Is warned of it once, whoever else publishes the topic."""

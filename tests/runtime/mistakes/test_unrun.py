@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 
 from graphflow.runtime.mistakes.unrun import advice
+from tests.cases import slow
 from tests.conftest import LIMIT
 
 TALK = "from graphflow import Node\n\nclass Talk(Node):\n    pass\n"
 
 
+@slow
 @pytest.mark.parametrize(
     ("more", "is_told"),
     [
@@ -32,6 +34,7 @@ def test_a_program_that_ends(tmp_path: Path, more: str, is_told: bool) -> None:
     assert done.stderr == (told if is_told else "")
 
 
+@slow
 @pytest.mark.parametrize("made", ["class Talk(Node): ...", "from talks import Talk"])
 def test_a_main_that_nothing_calls(tmp_path: Path, made: str) -> None:
     """It gets the remark, wherever its nodes come from."""
@@ -45,6 +48,7 @@ def test_a_main_that_nothing_calls(tmp_path: Path, made: str) -> None:
     assert done.stderr == told
 
 
+@slow
 @pytest.mark.parametrize(("missing", "is_told"), [("arms.geometry", True), ("geometry", False)])
 def test_a_file_of_a_package(tmp_path: Path, missing: str, is_told: bool) -> None:
     """It is run as a module, where it imports others of its package."""
@@ -57,6 +61,7 @@ def test_a_file_of_a_package(tmp_path: Path, missing: str, is_told: bool) -> Non
     assert done.stderr.count("graphflow run") == is_told
 
 
+@slow
 def test_an_error_is_enough(tmp_path: Path) -> None:
     """A program that failed gets no remark."""
     (tmp_path / "talk.py").write_text(f"{TALK}1 / 0\n")
@@ -74,6 +79,7 @@ def test_advice(tmp_path: Path) -> None:
     assert "main() is defined and never called" in advice(file, []), "a byte order mark is no part of the text"
 
 
+@slow
 @pytest.mark.parametrize(
     ("more", "told"),
     [

@@ -15,6 +15,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.runtime.mistakes.wrong_returns import wrong_return
 from graphflow.testing import Graph
+from tests.cases import slow
 
 
 class Front(Node):
@@ -65,6 +66,7 @@ def line_of(method: Callable[..., object], nth: int) -> str:
     return f"{__file__}:{method.__code__.co_firstlineno + nth}"
 
 
+@slow
 @pytest.mark.parametrize(
     ("name", "text"),
     [

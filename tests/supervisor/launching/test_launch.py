@@ -58,6 +58,7 @@ def test_a_node_name_that_is_taken_is_refused_before_anything_starts(machine: Ma
     machine.look("down")
 
 
+@slow
 @pytest.mark.real
 def test_a_log_folder_that_cannot_be_written_is_an_error_before_anything_starts(
     machine: Machine, project: Path
@@ -212,6 +213,7 @@ def test_a_start_whose_processes_are_killed(machine: Machine, project: Path, vic
     nothing_is_left(machine, family)
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize(
     ("text", "code", "told"),

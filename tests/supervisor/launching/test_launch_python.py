@@ -38,6 +38,7 @@ def test_what_it_prints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     assert capsys.readouterr().err == "reading\ndescribing\n"
 
 
+@slow
 @pytest.mark.parametrize(
     ("text", "why"),
     [

@@ -30,6 +30,7 @@ def line_of(text: str) -> int:
     return 1 + next(i for i, line in enumerate(ROBOT.read_text().splitlines()) if text in line)
 
 
+@slow
 def test_what_is_recorded() -> None:
     """Each action with its line and its arguments, substitutions as texts, and what others come after by its number."""
     told = record(ROBOT)
@@ -76,6 +77,7 @@ def test_what_is_recorded() -> None:
     assert found[11]["name"] == "$(var who)"
 
 
+@slow
 def test_what_has_no_words() -> None:
     """Is told with its line, and so is what is left out."""
     told = record(ROBOT)
@@ -104,6 +106,7 @@ def generate_launch_description():
 """
 
 
+@slow
 def test_what_a_container_cannot_be_given(tmp_path: Path) -> None:
     """Is left out, and said so; its nodes can be given it."""
     (tmp_path / "a.launch.py").write_text(CONTAINER)
@@ -113,6 +116,7 @@ def test_what_a_container_cannot_be_given(tmp_path: Path) -> None:
     assert (told["problems"], told["remarks"]) == ([], [{"line": 8, "message": text}])
 
 
+@slow
 def test_the_line_of_a_value_that_cannot_be_made(tmp_path: Path) -> None:
     """It is that of the action, where the file itself is not being run any more."""
     (tmp_path / "a.launch.py").write_text(
@@ -157,6 +161,7 @@ def generate_launch_description():
 """
 
 
+@slow
 def test_other_ways_of_saying_it(tmp_path: Path) -> None:
     """Submodules that were not imported, variables that are not set, a package's folder found by hand."""
     (tmp_path / "a.launch.py").write_text(SMALL)
@@ -344,6 +349,7 @@ def generate_launch_description():
 """
 
 
+@slow
 def test_a_package_that_is_not_there(tmp_path: Path) -> None:
     """Is an error that a file may catch when it is started; the file is written down with a substitution."""
     file = tmp_path / "a.launch.py"
@@ -550,6 +556,7 @@ def test_values_before_the_launch(tmp_path: Path, code: str) -> None:
     )
 
 
+@slow
 def test_conditions_that_are_compared(tmp_path: Path) -> None:
     """The problem says what to write, and nothing is said twice."""
     problems, remarks = described(
@@ -572,6 +579,7 @@ def test_arguments_in_no_description(tmp_path: Path) -> None:
     assert described(tmp_path, f"a = DeclareLaunchArgument('y')\n{node}") == ([], [text])
 
 
+@slow
 def test_an_argument_that_is_declared_late(tmp_path: Path) -> None:
     """Told at the action that uses it, as ROS 2 would fail there; not when a value is set for it."""
     file = tmp_path / "late.launch.py"
@@ -591,6 +599,7 @@ def test_an_argument_that_is_declared_late(tmp_path: Path) -> None:
     assert record(file, b="3")["remarks"] == []
 
 
+@slow
 def test_a_target_that_never_starts(tmp_path: Path) -> None:
     """An action that only an event handler names is in no description."""
     file = tmp_path / "target.launch.py"

@@ -19,6 +19,7 @@ from graphflow.supervisor.launching import probe as probe_module
 from graphflow.supervisor.launching.probe import probe
 from graphflow.supervisor.launching.probed import read_interfaces
 from graphflow.supervisor.processes.preload import PROBE_LIMIT
+from tests.cases import slow
 from tests.conftest import PROGRAMS, alive
 from tests.until import until
 
@@ -55,6 +56,7 @@ def test_what_a_class_declares(project: Path) -> None:
     assert "machines.robot" not in sys.modules
 
 
+@slow
 @pytest.mark.parametrize(
     ("class_path", "problem"),
     [
@@ -69,12 +71,14 @@ def test_why_a_class_cannot_be_had(class_path: str, problem: str, project: Path)
     assert fault.message == problem
 
 
+@slow
 def test_one_failure_leaves_the_others(project: Path) -> None:
     """A module that cannot be imported does not keep the next from being looked at."""
     classes = found(project, "machines.raises:Robot", "machines.robot:Robot", "machines.syntax:Robot")
     assert [type(classes[c]) for c in sorted(classes)] == [Problem, Interface, Problem]
 
 
+@slow
 def test_an_import_that_does_not_end(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """There is a limit, and the problem says what to do instead."""
     monkeypatch.setattr(probe_module, "PROBE_LIMIT", 0.5)
@@ -83,12 +87,14 @@ def test_an_import_that_does_not_end(project: Path, monkeypatch: pytest.MonkeyPa
     assert fault.message.endswith("do the work in the node, not at import")
 
 
+@slow
 def test_nothing_to_look_at() -> None:
     """A plan without classes has no Interfaces."""
     plan = Plan("empty", "f.yaml", "/nowhere", ())
     assert probe([n.class_path for n in plan.nodes], plan.root) == {}
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="no process groups here")
 def test_what_an_import_starts_ends_with_it(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ import zenoh
 
 from graphflow.transport.event_loop import foreign_threads
 from graphflow.transport.event_loop.foreign_threads import at_once
+from tests.cases import slow
 from tests.conftest import LIMIT
 from tests.until import until
 
@@ -98,6 +99,7 @@ else:
 """
 
 
+@slow
 @pytest.mark.parametrize(("way", "code"), [("end", 0), ("exit", 3), ("fork", 0)])
 def test_processes_end(foreign_router: zenoh.Session, way: str, code: int) -> None:
     """By themselves, without a word, and so do their children."""

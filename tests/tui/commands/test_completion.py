@@ -18,6 +18,7 @@ from tests.tui.stage import stage
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 @pytest.mark.parametrize(
     ("line", "whole", "choices"),
     sample(

@@ -41,6 +41,7 @@ async def test_keys_that_ask(view: str, key: str, screen: object) -> None:
         assert len(s.console.screen_stack) == 1
 
 
+@slow
 async def test_keys_that_say(graph: Graph) -> None:
     """The clock, the theme, hints if no node is selected, copied texts."""
     async with stage(Content("topics"), graph=graph) as s:
@@ -100,6 +101,7 @@ async def test_the_menu_and_the_search_have_what_is_in_the_graph(graph: Graph) -
         await s.until(lambda: str(s.view.content) == "params /talker")
 
 
+@slow
 async def test_alt_and_a_digit_as_old_terminals_send_it() -> None:
     """Textual reads it as a character of a Mac's option key."""
     async with stage(Content("nodes")) as s:
@@ -136,6 +138,7 @@ async def test_leaving(keys: tuple[str, ...]) -> None:
         assert s.asked == []
 
 
+@slow
 @pytest.mark.parametrize("keys", [("ctrl+c", "s"), ("ctrl+b", "S", "s")])
 async def test_stopping(keys: tuple[str, ...]) -> None:
     """Stopping has a key of its own; the question names the other consoles."""
@@ -190,6 +193,7 @@ def test_every_chord_is_used_once() -> None:
     assert len({a.name for a in console_actions()}) == sum(map(len, CONSOLE.values()))
 
 
+@slow
 @pytest.mark.parametrize("verb", ["restart", "stop"])
 async def test_a_supervisor_that_has_gone_is_asked_nothing(verb: str) -> None:
     """Restart and stop are not sent; the message says how to start the graph again."""

@@ -8,12 +8,14 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 from graphflow.tui.feeds.topic_monitor import TopicMonitor
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_messages_and_their_arrival(graph: Graph) -> None:
     """Messages are counted, the latest is kept and passed to the callback; nothing comes after the end."""
     node = Talker()

@@ -25,6 +25,7 @@ async def type_ahead(s: Stage, *keys: str) -> None:
     await s.until(lambda: s.console.keyboard.is_quiet and bool(s.text.strip()))  # a new dialog is drawn a moment later
 
 
+@slow
 async def test_into_a_dialog_and_out_of_it() -> None:
     """A dialog gets the keys typed for it, and the pane those after its enter."""
     async with stage(Content("nodes")) as s:

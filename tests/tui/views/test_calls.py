@@ -66,6 +66,7 @@ async def test_requests_of_earlier_consoles(graph: Graph) -> None:
         assert line(s, "a").value == "5"
 
 
+@slow
 async def test_a_service_by_name(graph: Graph) -> None:
     """The form opens at once; errors of the server are shown."""
     await graph.start(Talker())

@@ -10,12 +10,14 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from graphflow.tui.views import goals
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_a_goal_of_somebody_else(graph: Graph) -> None:
     """A goal of another client appears with its feedback, and c cancels it."""
     await graph.start(Talker())
@@ -36,6 +38,7 @@ async def test_a_goal_of_somebody_else(graph: Graph) -> None:
         await s.until("the goal has ended")
 
 
+@slow
 async def test_sending(graph: Graph) -> None:
     """The form has the goal's fields; the result is reported."""
     await graph.start(Talker())

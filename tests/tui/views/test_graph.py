@@ -6,12 +6,14 @@ import pytest
 
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.nodes import Listener, Talker
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_the_drawing_and_its_keys(graph: Graph) -> None:
     """Boxes have names; n selects one, enter opens it, M copies the drawing."""
     await graph.start(Talker(), Listener())

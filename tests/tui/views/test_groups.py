@@ -112,6 +112,7 @@ async def test_nothing_to_do() -> None:
         await s.until("nothing was changed here yet")
 
 
+@slow
 @pytest.mark.parametrize(
     ("fix", "told_after"), [(Limit("/left", "main", 2), 3.0), (Thread("/left", ("go",)), 13.0)], ids=["limit", "thread"]
 )

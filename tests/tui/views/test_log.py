@@ -28,6 +28,7 @@ RECORDS = [
 ]
 
 
+@slow
 async def test_all_nodes_one_node_a_namespace() -> None:
     """Names are shown if there are several nodes."""
     async with stage(Content("log"), Content("log", "/talker"), Content("log", "/arm"), records=RECORDS) as s:
@@ -44,6 +45,7 @@ async def test_all_nodes_one_node_a_namespace() -> None:
         assert "tick" not in s.text
 
 
+@slow
 @pytest.mark.parametrize(("width", "begins"), [(120, 29), (40, 4)])
 async def test_a_report_in_a_narrow_pane(width: int, begins: int) -> None:
     """In little room, a report's further lines begin below the names, and keep their relative indent."""
@@ -87,6 +89,7 @@ async def test_a_filter_that_is_much_too_long() -> None:
         await s.until("low battery")
 
 
+@slow
 async def test_what_is_new_is_followed_until_one_scrolls() -> None:
     """The view follows new lines until the user scrolls up, and again from the end."""
     many = [record(f"old {i}") for i in range(100)]
@@ -107,6 +110,7 @@ async def test_what_is_new_is_followed_until_one_scrolls() -> None:
         await s.until("new one")
 
 
+@slow
 async def test_muting() -> None:
     """A muted node is left out of merged logs, but not of its own log."""
     async with stage(Content("log"), Content("log", "/talker"), records=RECORDS) as s:
@@ -182,6 +186,7 @@ def written(folder: Path, node: str, lines: list[str]) -> None:
     (folder / f"{node}.log").write_text(text)
 
 
+@slow
 async def test_a_quiet_node_in_a_flood(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A node's own log is complete, read from its file; the merged one reports that older lines are gone."""
     monkeypatch.setattr("graphflow.tui.feeds.log_feed.RECORDS", 50)
@@ -210,6 +215,7 @@ async def test_errors_outlive_a_flood() -> None:
         await s.until("it broke")
 
 
+@slow
 async def test_going_to_the_newest_error(tmp_path: Path) -> None:
     """The newest error is shown in the log of its node, with the cursor on it, and then counts as seen."""
     lines = "".join(f"[INFO] [{1700000000 + i}.0] [arm]: line {i}\n" for i in range(200))

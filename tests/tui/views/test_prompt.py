@@ -21,6 +21,7 @@ def program(text: str) -> tuple[str, ...]:
     return (sys.executable, "-c", text)
 
 
+@slow
 async def test_output_streams_and_exit_codes_are_told() -> None:
     """stdout, stderr and the exit code are shown; escape sequences have no effect."""
     async with stage(Content("prompt")) as s:
@@ -51,6 +52,7 @@ async def test_ctrl_c_ends_the_verb_and_nothing_else() -> None:
         assert s.console.return_value is None
 
 
+@slow
 async def test_what_was_interrupted_is_read_at_its_end() -> None:
     """A command that ends by itself is shown from the top; an interrupted one, at its end."""
     lines = "import time\nfor i in range(100): print('line', i, flush=True)\n"
@@ -102,6 +104,7 @@ async def test_a_command_that_came_back_with_the_windows_waits_for_enter() -> No
         assert s.view.content == Content("prompt", "ps")
 
 
+@slow
 async def test_completion(graph: Graph) -> None:
     """Tab completes verbs and names from the graph, and shows the candidates if there are several."""
     await graph.start(Talker())
@@ -129,6 +132,7 @@ async def test_what_comes_too_fast_is_counted() -> None:
         assert "lines left out" in s.text or s.view._lost == 0  # type: ignore[attr-defined]
 
 
+@slow
 async def test_a_colon_opens_the_command_line() -> None:
     """A colon in an empty line opens the command line, as in other views; within a line it is a character."""
     async with stage(Content("prompt")) as s:

@@ -28,6 +28,7 @@ async def test_the_line_is_marked_and_on_screen(tmp_path: Path) -> None:
         assert s.console.clipboard_text == f"{file}:200"
 
 
+@slow
 async def test_the_lines_before_it_are_on_screen(tmp_path: Path) -> None:
     """The lines before it are visible even in a new pane, whose height is known only later."""
     (tmp_path / "long.py").write_text("\n".join(f"x{i} = {i}" for i in range(1, 301)))

@@ -10,6 +10,7 @@ from graphflow.msgs.geometry_msgs.msg import Twist
 from graphflow.msgs.turtlesim.msg import Pose
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.nodes import Listener, Talker
 from tests.tui.stage import stage
 
@@ -37,6 +38,7 @@ async def test_a_turtle_draws(graph: Graph) -> None:
         assert abs(sum("⠀" < c <= "⣿" for c in s.text) - before) <= 2, "carried, not driven: no line"
 
 
+@slow
 @pytest.mark.parametrize(
     ("key", "linear", "angular"), [("up", 2.0, 0.0), ("down", -2.0, 0.0), ("left", 0.0, 2.0), ("right", 0.0, -2.0)]
 )
@@ -53,6 +55,7 @@ async def test_arrows_drive(key: str, linear: float, angular: float, graph: Grap
         assert (driven.latest.linear.x, driven.latest.angular.z) == (linear, angular)
 
 
+@slow
 async def test_without_a_turtle() -> None:
     """The view says what it waits for."""
     async with stage(Content("turtle")) as s:

@@ -34,6 +34,7 @@ def test_the_word_of_a_node() -> None:
     assert displayed_state({**row, "state": "failed", "lifecycle": ""}, {"/a"}) == "failed"
 
 
+@slow
 async def test_the_bottom_lines_on_80_columns() -> None:
     """The keys of the focused view, and the two most important ones."""
     async with stage(Content("log"), Content("nodes"), size=(80, 24)) as s:
@@ -61,6 +62,7 @@ async def test_a_click_on_a_window_opens_it() -> None:
         assert s.console.windows.current == 1
 
 
+@slow
 async def test_many_windows_leave_room_for_the_states() -> None:
     """Windows around the current one are shown, with clickable marks for the others."""
     async with stage(*[Content("topics")] * 12, size=(80, 24)) as s:
@@ -78,6 +80,7 @@ async def test_many_windows_leave_room_for_the_states() -> None:
         assert s.console.windows.current == int(status[status.index("<") + 2]) - 1
 
 
+@slow
 async def test_clicks_on_what_can_be_pressed() -> None:
     """The view's keys, help and leaving can be clicked."""
     async with stage(Content("log"), size=(100, 24)) as s:
@@ -93,6 +96,7 @@ async def test_clicks_on_what_can_be_pressed() -> None:
         await s.until(lambda: s.console.return_value == "detach")
 
 
+@slow
 async def test_a_deadlock_is_told_wherever_one_is() -> None:
     """A new deadlock is reported in every view, with the key that shows it."""
     async with stage() as s:
@@ -122,6 +126,7 @@ async def test_a_supervisor_that_died() -> None:
         await s.until("✖ supervisor gone")
 
 
+@slow
 async def test_what_went_wrong_stays_until_it_is_seen() -> None:
     """Later messages do not replace an unseen error; commands do."""
     async with stage(size=(80, 20)) as s:

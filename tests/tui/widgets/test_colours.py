@@ -36,6 +36,7 @@ def rgb(text: str) -> tuple[int, int, int]:
     return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
 
 
+@slow
 @pytest.mark.parametrize("theme", [DARK, LIGHT], ids=["dark", "light"])
 async def test_all_that_is_written_can_be_read(theme: Theme) -> None:
     """Contrast suffices on the background, on titles, and on selected rows."""
@@ -69,6 +70,7 @@ async def test_ansi_themes_use_the_terminals_colours() -> None:
         )
 
 
+@slow
 async def test_a_node_has_one_colour() -> None:
     """A node has the same colour in all views."""
     async with stage(Content("help")) as s:

@@ -12,6 +12,7 @@ from tests.tui.stage import stage
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 @pytest.mark.parametrize(
     ("keys", "answer"), [(["d"], "d"), (["s"], "s"), (["escape"], None), (["up", "enter"], "s"), (["enter"], None)]
 )

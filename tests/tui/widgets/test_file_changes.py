@@ -24,6 +24,7 @@ def file(tmp_path: Path) -> Path:
     return made
 
 
+@slow
 async def test_the_windows_are_written(file: Path) -> None:
     """A key writes the windows after confirmation; comments stay."""
     async with stage(Content("nodes"), Content("log"), folder=file.parent) as s:
@@ -37,6 +38,7 @@ async def test_the_windows_are_written(file: Path) -> None:
         await s.until("needs no change")
 
 
+@slow
 @pytest.mark.parametrize(
     ("change", "why"),
     [("nodes: {", "lab"), ("nodes: {}", "there is no node"), ("nodes: {/a: {clas: x:Y}}", "unknown key 'clas'")],

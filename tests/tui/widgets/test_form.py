@@ -18,6 +18,7 @@ from tests.tui.stage import stage
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_nested_fields(graph: object) -> None:
     """Fields are named by path; only differences from the defaults are kept."""
     async with stage(Content("nodes")) as s:

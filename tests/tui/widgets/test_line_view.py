@@ -108,6 +108,7 @@ async def test_moving() -> None:
             assert made.chosen is None
 
 
+@slow
 async def test_searching() -> None:
     """The search begins at the end and goes backwards; n and N continue; lower case matches any case."""
     async with stage(Content("help")) as s:

@@ -65,6 +65,7 @@ async def test_rows_that_are_drawn_before_they_are_measured(monkeypatch: pytest.
         assert "what is much longer" in s.text
 
 
+@slow
 async def test_where_nothing_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """The message names the search, and the key that clears it."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)
@@ -89,6 +90,7 @@ async def test_long_tables_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
         assert s.view.query_one(DataTable).row_count == 10
 
 
+@slow
 async def test_an_order(monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows are sorted by quantities with their units; choosing again reverses; rows without a value come last."""
     monkeypatch.setattr("graphflow.tui.app.view_class", lambda name: Numbers)

@@ -24,6 +24,7 @@ from rclpy.executors import (
 )
 from rclpy.node import Node
 from rclpy.task import Future
+from tests.cases import slow
 from tests.until import until
 
 
@@ -61,6 +62,7 @@ def test_a_node_is_in_one_executor(node: Node, single: SingleThreadedExecutor) -
     assert other.get_nodes() == []
 
 
+@slow
 def test_an_error_in_a_callback_leaves_spin(node: Node, single: SingleThreadedExecutor) -> None:
     """And the next callbacks run when it spins again."""
     calls: list[int] = []

@@ -10,6 +10,7 @@ from graphflow import ActionClient, Client, Node, ServiceUnavailable, task
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.testing import Graph
+from tests.cases import slow
 from tests.runtime.cast import Adder, Server
 
 
@@ -33,6 +34,7 @@ def told(caplog: pytest.LogCaptureFixture) -> list[str]:
     return [record.message for record in caplog.records if "wait_ready" in record.message]
 
 
+@slow
 async def test_they_are_told_with_the_nearest_name(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
     """Once per client, even for repeated waits; an action counts as one."""
     await graph.start(Adder(), Server(), Waiting())

@@ -6,6 +6,7 @@ import pytest
 
 from graphflow.tui.panes import Content
 from graphflow.tui.views.nodes.crash import traceback_of
+from tests.cases import slow
 from tests.tui.stage import Supervised, record, stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -21,6 +22,7 @@ TRACE = [
 ]
 
 
+@slow
 async def test_the_evidence() -> None:
     """Exit status, traceback with the user's own lines marked, and last output are shown; r restarts."""
     records = [record(text, "/talker", 3 if i else 1, number=i) for i, text in enumerate(TRACE)]

@@ -96,6 +96,7 @@ async def test_restart_and_stop_ask_first() -> None:
         assert s.asked[2:] == [{"do": "restart", "node": "/b"}]
 
 
+@slow
 @pytest.mark.parametrize(
     ("key", "state", "opens"),
     [("l", "ready", "log /a"), ("p", "ready", "params /a"), ("enter", "failed", "crash /a")],
@@ -109,6 +110,7 @@ async def test_keys_open_what_belongs_to_the_node(key: str, state: str, opens: s
         assert [str(p.content) for p in s.console.window.panes()] == ["nodes", opens]
 
 
+@slow
 async def test_finding(graph: Graph) -> None:
     """Typing narrows the list; escape clears the search."""
     async with stage(Content("nodes"), nodes=("/arm", "/leg", "/left_arm")) as s:
@@ -176,6 +178,7 @@ async def test_lifecycle_states_errors_and_floods() -> None:
         assert b.rstrip().endswith("exit code 3")
 
 
+@slow
 async def test_groups_of_nodes() -> None:
     """Nodes are grouped by namespace or process, folded by a key; a group is not a node."""
     async with stage(Content("nodes"), nodes=("/arm/left", "/talker", "/arm/right")) as s:

@@ -45,6 +45,7 @@ async def test_a_node(graph: Graph) -> None:
         assert "/talker" in s.text
 
 
+@slow
 async def test_all_nodes(graph: Graph) -> None:
     """All nodes are folded at first; unfolded rows are saved with the windows."""
     await graph.start(Talker(), Listener())
@@ -65,6 +66,7 @@ async def test_all_nodes(graph: Graph) -> None:
         await s.until("echo /chatter")
 
 
+@slow
 @pytest.mark.parametrize(("name", "opened"), [("/add", "call /add"), ("/fibonacci", "goals")])
 async def test_what_is_opened(graph: Graph, name: str, opened: str) -> None:
     """Enter opens a service's form or an action's goals."""

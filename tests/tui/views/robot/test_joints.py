@@ -11,6 +11,7 @@ from graphflow.qos import LATCHED
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
 from nodes.joint_state_publisher import JointStatePublisher
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -34,6 +35,7 @@ class Wheel(Node):
     states = Publisher(JointState, "joint_states", 10)
 
 
+@slow
 async def test_sliders_publish(graph: Graph) -> None:
     """Without a publisher of positions, the view is one; keys choose a joint and move it within its limits."""
     await graph.start(Described())
@@ -55,6 +57,7 @@ async def test_sliders_publish(graph: Graph) -> None:
         await s.until("0.00 rad    0°")
 
 
+@slow
 async def test_positions_of_a_publisher(graph: Graph) -> None:
     """A joint_state_publisher takes what is set."""
     publisher = JointStatePublisher()

@@ -74,6 +74,7 @@ async def test_without_transforms(graph: Graph) -> None:
         await s.until(lambda: any("⠀" < c <= "⣿" for c in s.text), "the scan is drawn")
 
 
+@slow
 @pytest.mark.parametrize(("key", "linear", "angular"), [("up", 0.15, 0.0), ("left", 0.0, 0.8), ("space", 0.0, 0.0)])
 @pytest.mark.parametrize("kind", [Twist, TwistStamped])
 async def test_keys_drive(

@@ -9,6 +9,7 @@ from graphflow.testing import Graph
 from graphflow.tf import FrameInfo, Transform, Transforms
 from graphflow.tui.panes import Content
 from graphflow.tui.views.robot.tf import is_stopped, remark
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -21,6 +22,7 @@ class Robot(Node):
         self.tf.send(Transform.of(parent, "odom", stamp=Time(round(second * 1e9))))
 
 
+@slow
 async def test_frames_are_drawn(graph: Graph) -> None:
     """Below each other, with their publishers; a second tree is told."""
     robot = Robot()

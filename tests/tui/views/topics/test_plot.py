@@ -15,6 +15,7 @@ from tests.tui.stage import stage
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_fields_by_name_and_all(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """`topic.a,b` are two curves; a topic alone, all its numeric fields."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)
@@ -132,6 +133,7 @@ async def test_fields_are_chosen_and_have_axes_of_their_own(graph: Graph, monkey
             await s.press("a")
 
 
+@slow
 async def test_fields_of_one_unit_share_an_axis(graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """A layout of an earlier version, with `axes: true`, gives each curve an axis of its own."""
     monkeypatch.setattr(plot, "SAMPLES_PER_SECOND", 1e9)
@@ -150,6 +152,7 @@ async def test_fields_of_one_unit_share_an_axis(graph: Graph, monkeypatch: pytes
             assert s.text.count("┌") == charts
 
 
+@slow
 @pytest.mark.parametrize(
     ("about", "message"),
     [

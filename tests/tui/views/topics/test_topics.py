@@ -9,6 +9,7 @@ from graphflow.msgs.std_msgs.msg import Int32, String
 from graphflow.qos import Reliability
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.nodes import Listener, Talker
 from tests.tui.stage import stage
 
@@ -29,6 +30,7 @@ class Careful(Node):
     word = Subscription(String, "word")
 
 
+@slow
 async def test_types_and_counts(graph: Graph) -> None:
     """Publishers and subscriptions are counted; hidden topics are shown on request."""
     await graph.start(Talker(), Listener())

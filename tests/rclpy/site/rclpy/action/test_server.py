@@ -12,6 +12,7 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
+from tests.cases import slow
 from tests.rclpy.conftest import Spinner
 
 
@@ -30,6 +31,7 @@ def ended(spin: Spinner, handle: Any) -> Any:
     return future.result()
 
 
+@slow
 @pytest.mark.parametrize(("verb", "status"), [("succeed", 4), ("abort", 6), ("", 6), ("raise", 6)])
 def test_a_goal_ends_as_its_callback_says(node: Node, spin: Spinner, verb: str, status: int) -> None:
     """If it says nothing, or fails, the goal is aborted; feedback comes meanwhile."""

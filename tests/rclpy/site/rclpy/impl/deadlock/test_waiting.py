@@ -110,6 +110,7 @@ def test_what_is_stuck_is_told(
     assert words in told
 
 
+@slow
 @pytest.mark.parametrize("cls", dict.fromkeys(fixed for _, fixed, _ in planted.PLANTED), ids=lambda c: c.__name__)
 def test_what_the_report_asks_for_ends_it(
     start: Callable[[type[Any]], Program], caplog: pytest.LogCaptureFixture, cls: type[Any]
@@ -124,6 +125,7 @@ RIGHT = [(way, a) for way in waiting_programs.WAYS for a in waiting_programs.ARR
 RIGHT += [(way, a) for way in waiting_programs.AWAITS for a in waiting_programs.ARRANGEMENTS[:3]]
 
 
+@slow
 @pytest.mark.parametrize(("way", "arrangement"), sample(RIGHT, 9), ids=str)
 def test_who_merely_waits_is_not_called_stuck(
     caplog: pytest.LogCaptureFixture, network: object, way: str, arrangement: str

@@ -18,6 +18,7 @@ from rclpy.impl.mistakes.arguments import must_return
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from tests.cases import slow
 from tests.rclpy.conftest import Spinner
 
 
@@ -110,6 +111,7 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
 ]
 
 
+@slow
 @pytest.mark.parametrize(("call", "kind", "text"), CALLS)
 def test_a_call_says_how_it_is_written(
     node: Node, call: Callable[[Node], Any], kind: type[Exception], text: str

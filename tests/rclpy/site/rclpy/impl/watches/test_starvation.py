@@ -22,6 +22,7 @@ from rclpy.impl.deadlock import waiting
 from rclpy.impl.nodes import internals_of
 from rclpy.impl.watches import starvation
 from rclpy.node import Node
+from tests.cases import slow
 from tests.rclpy.looking import ManualTime, look
 from tests.until import until
 
@@ -90,6 +91,7 @@ class Slow(Node):
 TICK = f"test_starvation.py:{Slow.tick.__code__.co_firstlineno + 2} in tick"
 
 
+@slow
 @pytest.mark.parametrize("threads", [1, 3])
 def test_a_callback_that_keeps_others_waiting(node: Node, caplog: Caplog, threads: int) -> None:
     """Told once with the line, and when it is over: those of its executor wait, or those of its group."""
