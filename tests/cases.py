@@ -76,7 +76,7 @@ def limit(number: int) -> pytest.MarkDecorator:
 
 
 slow = pytest.mark.slow
-"""For a test that takes a third of a second or more, or guards what seldom changes: it runs with `--cases full`."""
+"""For a test that takes a fifth of a second or more, or guards what seldom changes: it runs with `--cases full`."""
 
 
 def without_slow(items: Sequence[pytest.Item]) -> tuple[list[pytest.Item], list[pytest.Item]]:

@@ -29,6 +29,7 @@ print(json.dumps([name for name in {HEAVY!r} if name in sys.modules]), file=sys.
     return found
 
 
+@slow
 @pytest.mark.parametrize("option", ["--help", "--version"])
 def test_help_imports_nothing_heavy(option: str) -> None:
     """`graphflow --help` and `--version` do without everything that takes long to import."""
@@ -42,6 +43,7 @@ def test_help_of_a_verb_imports_nothing_heavy(verb: str) -> None:
     assert imported(f"import graphflow.cli.main; graphflow.cli.main.main([{verb!r}, '--help'])") == []
 
 
+@slow
 @pytest.mark.parametrize(
     "module",
     [*(f"graphflow.cli.ros.{verb}" for verb in ("topic", "node", "service")), "graphflow.introspect.graph_view"],

@@ -19,6 +19,7 @@ from graphflow.names import (
     join,
     split,
 )
+from tests.cases import slow
 
 
 def rules(*texts: str) -> list[Remap]:
@@ -183,6 +184,7 @@ def test_empty_parts_at_the_root(name: str) -> None:
         expand(name, "/", "node")
 
 
+@slow
 @settings(derandomize=True, deadline=None)
 @given(st.text(st.sampled_from("aB_2/~{}-node"), max_size=12))
 def test_an_expanded_name_is_a_full_name(name: str) -> None:

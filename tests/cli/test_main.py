@@ -16,6 +16,7 @@ from graphflow.cli import exits, main
 from graphflow.cli.main import cli
 from graphflow.supervisor.starts import Announcement
 from graphflow.transport.rendezvous import free_endpoint
+from tests.cases import slow
 
 VERBS: tuple[str, ...] = ("init", "up", "down", "attach", "ls", "ps", "start", "restart", "stop", "status", "wait")
 VERBS += ("logs", "plan", "check", "explain", "schema", "launch", "run", "rclpy", "ws")
@@ -216,6 +217,7 @@ def test_a_graph_that_is_being_started(
     assert "being started" not in capsys.readouterr().err
 
 
+@slow
 @pytest.mark.real
 @pytest.mark.parametrize(
     ("streams", "code", "told"),

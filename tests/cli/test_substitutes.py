@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from graphflow.cli.substitutes import PACKAGES, no_package
+from tests.cases import slow
 from tests.conftest import Machine
 
 
@@ -24,6 +25,7 @@ def test_packages(package: str, text: str) -> None:
     assert bool(found) is bool(text)
 
 
+@slow
 @pytest.mark.parametrize(
     "words", [("launch", "turtlebot3_navigation2", "navigation2.launch.py"), ("run", "xacro", "x")]
 )

@@ -12,7 +12,7 @@ from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Empty
 from graphflow.testing import Graph
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.deadlock.cast import (
     Caplog,
     Dialler,
@@ -52,6 +52,7 @@ class PollsAKeptGoal(Planner):
             await self.clock.sleep(0.05)  # stuck: PollsAKeptGoal
 
 
+@slow
 async def test_a_goal_that_an_object_of_the_nodes_keeps(graph: Graph, caplog: Caplog) -> None:
     """It is polled by a method that first asks whether there is one."""
     graph.deadlock = "report"
@@ -361,6 +362,7 @@ class TakesTwoPermits(Dialler):
             await self.ping.call(Empty.Request())
 
 
+@slow
 @pytest.mark.parametrize(
     "case",
     sample(

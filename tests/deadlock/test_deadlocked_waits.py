@@ -172,6 +172,7 @@ class LockAcquiredTwice(Robot):
         await asyncio.gather(*(self.part() for _ in range(2)))
 
 
+@slow
 @pytest.mark.parametrize("program", [PermitsAcquiredTwice, LockAcquiredTwice])
 async def test_parts_of_a_gather_that_only_release(graph: Graph, caplog: Caplog, program: type[Robot]) -> None:
     """What one of them holds is not to be seen; but all that could release it stand still."""

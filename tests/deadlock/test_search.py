@@ -531,6 +531,7 @@ class Courier(Node):
         return Fibonacci.Result()
 
 
+@slow
 async def test_a_ring_through_the_result_of_an_action(graph: Graph, caplog: Caplog) -> None:
     """It is reported, and cancelling the goal still works: that needs no slot of the user's (row 26)."""
     customer = Customer()

@@ -10,6 +10,7 @@ import pytest
 
 from graphflow.graph.schema import graph_schema, schema_text
 from graphflow.markup import source
+from tests.cases import slow
 from tests.conftest import PROJECT
 
 VALIDATOR = jsonschema.Draft202012Validator(graph_schema())
@@ -20,6 +21,7 @@ def faults(text: str) -> list[Any]:
     return [list(error.absolute_path) for error in VALIDATOR.iter_errors(source.read(text, "f.yaml").data)]
 
 
+@slow
 def test_it_is_a_schema() -> None:
     """By the rules of JSON Schema itself."""
     jsonschema.Draft202012Validator.check_schema(graph_schema())

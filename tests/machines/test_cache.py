@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from graphflow.machines import cache as cache_module
 from graphflow.machines.cache import GraphCache, GraphChange
 from graphflow.wire.liveliness import Entity, Kind, parse_token
+from tests.cases import slow
 
 STRING = "std_msgs/msg/String"
 ADD = "example_interfaces/srv/AddTwoInts"
@@ -241,6 +242,7 @@ def test_repr_counts() -> None:
     assert repr(cache_of(*GRAPH)) == "<GraphCache 2 nodes, 5 tokens>"
 
 
+@slow
 @given(st.lists(st.tuples(st.sampled_from(GRAPH), st.booleans()), max_size=30))
 def test_any_history_of_tokens(events: list[tuple[Entity, bool]]) -> None:
     """After any history the picture is that of a plain model, and every change is reported once."""

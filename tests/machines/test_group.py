@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
 from graphflow.machines.group import GroupState
-from tests.cases import count
+from tests.cases import count, slow
 
 
 def test_slots_are_given_until_the_limit() -> None:
@@ -151,6 +151,7 @@ TestSchedules = Schedules.TestCase
 TestSchedules.settings = settings(max_examples=count(few=25, full=100), stateful_step_count=30, deadline=None)
 
 
+@slow
 @given(
     work=st.lists(st.integers(1, 6), min_size=2, max_size=6),
     limit=st.integers(1, 3),

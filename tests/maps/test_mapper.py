@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from graphflow.maps import Mapper, mapper
 from graphflow.maps.grid import UNKNOWN
 from graphflow.tf import Pose2D
+from tests.cases import slow
 
 HOME = Pose2D(0.0, 0.0, 0.0)
 NOTHING = np.zeros((0, 2))
@@ -46,6 +47,7 @@ def test_a_standing_robot_draws_once() -> None:
     assert made.score > 0.9
 
 
+@slow
 def test_the_odometry_is_corrected() -> None:
     """An odometry that turns too far and drives too short is found out, scan by scan."""
     made = Mapper()

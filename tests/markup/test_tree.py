@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from graphflow.errors import Place
 from graphflow.markup import source
 from graphflow.markup.tree import Item, first_of, items, located, merged, shared, source_of, tree
+from tests.cases import slow
 
 TEXT = "a: 1\nb: {c: [x, {d: 2}], e: }\n"
 HERE, THERE = Place("f.yaml", 1, 1), Place("g.yaml", 2, 2)
@@ -36,6 +37,7 @@ VALUES = st.recursive(
 )
 
 
+@slow
 @given(VALUES)
 def test_any_value_at_one_place(value: source.Data) -> None:
     """A plain value becomes a tree that was written at one place, and is itself again."""

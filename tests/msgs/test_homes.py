@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from graphflow.msgs.homes import homes, imports
+from tests.cases import slow
 
 
 @pytest.mark.parametrize(
@@ -22,6 +23,7 @@ def test_where_a_type_is(name: str, found: list[str]) -> None:
     assert homes(name)[: len(found) or None] == found
 
 
+@slow
 def test_lines_that_import_one() -> None:
     """Of several packages, two are named."""
     assert imports("Twist") == "from geometry_msgs.msg import Twist"

@@ -196,6 +196,7 @@ async def test_commands_of_the_other_type(graph: Graph) -> None:
     assert node.simulation.robots[""].pose.x - halfway > 0.1
 
 
+@slow
 async def test_two_nodes_that_steer(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
     """They are named once; one alone is not."""
     await graph.start(RobotSimulator(world="empty"))

@@ -522,6 +522,7 @@ async def test_a_colour_of_300_is_refused(graph: Graph) -> None:
 # angles
 
 
+@slow
 @pytest.mark.parametrize("way", ["spawn", "absolute", "relative", "goal"])
 async def test_an_angle_in_degrees(graph: Graph, caplog: pytest.LogCaptureFixture, way: str) -> None:
     """Is explained once, however it is given, and obeyed as radians."""

@@ -222,6 +222,7 @@ def test_two_goals_decided_at_the_same_time() -> None:
         simulate(story)
 
 
+@slow
 def test_states_that_overtake_each_other() -> None:
     """A client never sees a goal go back, from CANCELING to EXECUTING."""
     model = Model(Setting("parallel", None, "continue", 0.3, 0.0, True, 0))

@@ -48,6 +48,7 @@ async def test_the_description_is_what_was_hashed(graph: Graph, name: str) -> No
     assert sorted(names[1:]) == names[1:]
 
 
+@slow
 async def test_sources_are_the_definition_files(graph: Graph) -> None:
     """Types that have a file come with its text, derived ones are implicit."""
     await graph.start(Adder())

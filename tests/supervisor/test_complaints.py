@@ -90,6 +90,7 @@ def test_a_parameter_file_for_nobody(machine: Machine, project: Path, section: s
     assert "nothing was started" in told
 
 
+@slow
 @pytest.mark.parametrize(
     ("remap", "told"),
     [

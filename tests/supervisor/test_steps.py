@@ -78,6 +78,7 @@ def test_a_step_may_stop_the_graph(machine: Machine, project: Path) -> None:
     assert "stopping (it is late)" in up.text
 
 
+@slow
 @pytest.mark.real
 def test_a_graph_ends_after_its_last_step(machine: Machine, project: Path) -> None:
     """A delay keeps it up after its processes have ended."""
@@ -89,6 +90,7 @@ def test_a_graph_ends_after_its_last_step(machine: Machine, project: Path) -> No
     assert up.text.index("it is late") < up.text.index("has ended")
 
 
+@slow
 @pytest.mark.real
 def test_a_launch_file_that_starts_no_process(machine: Machine, project: Path) -> None:
     """Ends with its last action."""

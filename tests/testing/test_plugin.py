@@ -203,6 +203,7 @@ def test_a_limit_of_its_own(pytester: pytest.Pytester, monkeypatch: pytest.Monke
     result.stdout.fnmatch_lines(["*was not done after*mark it with @pytest.mark.timeout(*)*"])
 
 
+@slow
 def test_a_test_that_waits_for_a_service(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     """Which no node has, is ended with its name."""
     monkeypatch.setattr("graphflow.testing.plugin.IDLE_LIMIT", 0.2)

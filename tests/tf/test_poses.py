@@ -34,6 +34,7 @@ def test_a_frame_that_is_moved_and_turned() -> None:
     assert moved.inverse().translation == pytest.approx((0.0, 1.0, 0.0))
 
 
+@slow
 @given(poses, poses, vectors)
 def test_poses_compose_and_go_back(a: Pose, b: Pose, point: tuple[float, float, float]) -> None:
     """As maps of points do."""
@@ -41,6 +42,7 @@ def test_poses_compose_and_go_back(a: Pose, b: Pose, point: tuple[float, float, 
     assert a.inverse().point(a.point(point)) == pytest.approx(point, abs=1e-9)
 
 
+@slow
 @given(rotations, rotations, vectors)
 def test_rotations_are_those_of_the_library(a: tuple[float, ...], b: tuple[float, ...], v: tuple[float, ...]) -> None:
     """Which has w first."""

@@ -12,6 +12,7 @@ from graphflow.testing.clock import settle
 from graphflow.transport.base import Answer
 from graphflow.transport.inbox import Inbox
 from graphflow.transport.memory import MemorySession, Network
+from tests.cases import slow
 
 
 def nothing() -> None:
@@ -208,6 +209,7 @@ async def test_a_request_goes_to_every_server(graphflow_runner: asyncio.Runner) 
     assert answers == [Answer(b"2", b""), Answer(b"1", b""), None]
 
 
+@slow
 async def test_a_request_that_is_thrown_away_ends_the_call(graphflow_runner: asyncio.Runner) -> None:
     """A server that is gone without an answer does not leave its caller waiting."""
     talk = Talk()

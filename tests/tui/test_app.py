@@ -76,6 +76,7 @@ async def test_a_crash_is_flagged_until_one_looks() -> None:
         assert "0:log*!" not in s.text
 
 
+@slow
 async def test_logs_are_read_while_the_console_runs() -> None:
     """Logs are read at every update, even if no view shows them."""
     async with stage(Content("log"), records=[record("one")]) as s:

@@ -61,6 +61,7 @@ async def test_views_keep_their_state_while_another_window_is_shown() -> None:
         assert len(s.console.query(Frame)) == 2
 
 
+@slow
 async def test_the_title_says_what_is_special() -> None:
     """The note is on the right of the title if there is room; the focused title is marked."""
     async with stage(Content("log"), size=(60, 20)) as s:

@@ -10,6 +10,7 @@ from graphflow.wire import idl
 from graphflow.wire.described import FIELDS_BOUND
 from graphflow.wire.extent import DEPTH_BOUND, Extent, extent
 from graphflow.wire.schema import Message
+from tests.cases import slow
 
 from .messages import message_names
 
@@ -45,6 +46,7 @@ def test_how_deep_types_may_be() -> None:
             size_of(A=text, **{**chain, last: ""}, B="A2 x")
 
 
+@slow
 def test_ros_types_are_far_from_the_bounds() -> None:
     """Types with ten times the fields and the depth of the largest that there are can be used."""
     sizes = [extent(name, registry.message_schema) for name in message_names()]

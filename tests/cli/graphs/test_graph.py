@@ -37,6 +37,7 @@ def test_a_part(standing: Machine) -> None:
     )
 
 
+@slow
 def test_for_others(standing: Machine, tmp_path: Path) -> None:
     """Graphviz, Mermaid, a file."""
     assert standing.look("graph", "--dot").startswith("digraph graphflow {\n")

@@ -39,6 +39,7 @@ def here(machine: Machine, tmp_path: Path) -> Machine:
     return machine
 
 
+@slow
 @pytest.mark.parametrize(
     ("path", "told"),
     [

@@ -92,6 +92,7 @@ def test_without_comments(own: Path, show: Show) -> None:
     )
 
 
+@slow
 @pytest.mark.parametrize(
     ("name", "message"),
     [
@@ -237,6 +238,7 @@ def test_proto(capsys: pytest.CaptureFixture[str]) -> None:
     assert looked(capsys, "proto", "example_interfaces/action/Fibonacci", "--no-quotes") == "order: 0\n"
 
 
+@slow
 def test_the_slides_words(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     """`info` for `show`; `package` without one; a type from standard input."""
     assert looked(capsys, "info", "std_msgs/Header") == looked(capsys, "show", "std_msgs/msg/Header")

@@ -41,6 +41,7 @@ def test_executables(machine: Machine, robot: Path) -> None:
     assert told in machine.look("pkg", "executables", "turtlesin", code=1)
 
 
+@slow
 def test_prefix(machine: Machine, robot: Path) -> None:
     """The prefix of the project's packages, and of those that come with graphflow, is printed."""
     assert machine.look("pkg", "prefix", "my_robot", cwd=robot) == f"{robot}\n"

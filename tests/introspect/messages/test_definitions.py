@@ -16,6 +16,7 @@ from graphflow.wire.described import DESCRIBING, verified
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.schema import Message
 from graphflow.wire.typehash import type_hash
+from tests.cases import slow
 
 THING = "definitions_msgs/msg/Thing"
 SOURCES = {THING: "uint8 X=3\nPart part\n", "definitions_msgs/msg/Part": "int32[2] y [1, 2]\n"}
@@ -94,6 +95,7 @@ class View:
         return self.answers[name]
 
 
+@slow
 def test_learning(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first usable definition is taken; a known type is not fetched."""
     monkeypatch.setattr(registry, "_foreign", {})

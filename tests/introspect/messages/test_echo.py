@@ -169,6 +169,7 @@ def test_messages_read_back(message: Any) -> None:
     assert from_plain(type(message), read(block(plain(message)), "block").data) == message
 
 
+@slow
 def test_long_lists_are_cut_before_they_are_made() -> None:
     """Elements of a large array that are not shown are not converted."""
     message: Any = registry.interface_class("std_msgs/msg/UInt8MultiArray")(data=bytes(20_000_000))

@@ -29,6 +29,7 @@ from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.transport import inbox as inbox_module
 from graphflow.wire import attachment
+from tests.cases import slow
 from tests.runtime.cast import Log, Speaker, nothing
 
 
@@ -51,6 +52,7 @@ async def test_what_is_published_is_heard(graph: Graph) -> None:
     assert listening.get_publisher_count() == 1
 
 
+@slow
 async def test_a_handler_may_be_a_coroutine_or_not(graph: Graph) -> None:
     """`def`, `async def` and a `def` in a thread are all called with each message."""
     log: list[tuple[str, bool]] = []

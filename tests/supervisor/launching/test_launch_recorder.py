@@ -293,6 +293,7 @@ def test_an_encoding(tmp_path: Path, mark: bytes) -> None:
     assert record(file)["problems"] == []
 
 
+@slow
 def test_a_description_of_nothing(tmp_path: Path) -> None:
     """It is let pass, and told."""
     (tmp_path / "a.launch.py").write_text("import launch\ngenerate_launch_description = launch.LaunchDescription\n")
@@ -386,6 +387,7 @@ def generate_launch_description():
 """
 
 
+@slow
 def test_what_is_set_is_known_to_functions(tmp_path: Path) -> None:
     """In the order of the file and within groups; what a function sets holds for what comes after it."""
     file = tmp_path / "a.launch.py"
@@ -440,6 +442,7 @@ def generate_launch_description():
 """
 
 
+@slow
 def test_constants_of_messages(tmp_path: Path) -> None:
     """They are what they are, as where an event brings a lifecycle node up."""
     file = tmp_path / "a.launch.py"
@@ -490,6 +493,7 @@ def generate_launch_description():
 """
 
 
+@slow
 def test_what_is_added_while_a_file_is_carried_out(tmp_path: Path) -> None:
     """Counts; functions that would be called later are left out, and the file's own substitutions are made."""
     (tmp_path / "a.launch.py").write_text(LATE)
@@ -546,6 +550,7 @@ def described(folder: Path, body: str, **values: str) -> tuple[list[str], list[s
     return lines[0], lines[1]
 
 
+@slow
 @pytest.mark.parametrize("code", ["int(x)", "float(str(x))", "range(x)", "x > 3", "x.lower()", "list(x)", "x[0]"])
 def test_values_before_the_launch(tmp_path: Path, code: str) -> None:
     """Code that takes a substitution for its value fails with the way to the value."""

@@ -88,6 +88,7 @@ def log_of(machine: Machine) -> Path:
     return Path(rows(machine)["/p"]["log"])
 
 
+@slow
 def test_a_program_is_like_a_node(machine: Machine, project: Path) -> None:
     """Its output is logged, it has its environment and the usual signals, it is asked to end; so is what it started."""
     machine.run("up", "-d", write(project, SHELL), cwd=project)

@@ -19,6 +19,7 @@ from graphflow.system import is_portable
 from graphflow.transport.shared_memory import ring
 from graphflow.transport.shared_memory.ring import SPARE, Ring, RingReader, number_of, slots_for
 from graphflow.wire.shared_memory import Descriptor, unpack
+from tests.cases import slow
 from tests.conftest import LIMIT
 
 pytestmark = pytest.mark.skipif(is_portable() or not hasattr(os, "memfd_create"), reason="memory cannot be shared here")
@@ -65,6 +66,7 @@ def test_a_message_is_read_where_it_lies(writer: Ring) -> None:
     assert not array.flags.owndata
 
 
+@slow
 def test_a_claimed_slot_is_passed_over(writer: Ring) -> None:
     """However often the writer comes round, also when only an array of the message is left."""
     reader = RingReader(ALICE)
@@ -106,6 +108,7 @@ def test_readers_share_the_slots(writer: Ring) -> None:
     assert claimed == {"alice": 2, "bob": 2, "eve": 0}
 
 
+@slow
 def test_a_reader_leaves(writer: Ring) -> None:
     """Its column is free again; but not while it claims something, since it may use that yet."""
     writer.admit([ALICE, BOB])
@@ -119,6 +122,7 @@ def test_a_reader_leaves(writer: Ring) -> None:
     assert writer.admit([])
 
 
+@slow
 def test_a_reader_is_put_out_while_it_claims(writer: Ring, monkeypatch: pytest.MonkeyPatch) -> None:
     """The writer has looked at the claims already, and may write the slot: the message is lost to this reader."""
     alice, place, fence = RingReader(ALICE), write(writer, 1), ring._fence

@@ -20,12 +20,14 @@ from graphflow.tui.feeds.graph_feed import Live
 from graphflow.tui.panes import Content
 from graphflow.wire import process
 from graphflow.wire.liveliness import Entity, Kind
+from tests.cases import slow
 from tests.tui.nodes import Talker
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
 
 
+@slow
 async def test_it_is_hidden_and_reports_are_asked_for_only_while_wanted(
     graph: Graph, monkeypatch: pytest.MonkeyPatch
 ) -> None:

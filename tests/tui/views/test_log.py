@@ -168,6 +168,7 @@ async def test_long_lines_wrap_unless_told_otherwise() -> None:
         assert "END" not in s.text
 
 
+@slow
 async def test_a_line_that_comes_again_and_again() -> None:
     """Consecutive repetitions are shown once with their number; other nodes, levels and tracebacks are not merged."""
     same = [record("stuck"), record("stuck"), record("stuck", "/arm"), record("stuck", "/arm", 3)]

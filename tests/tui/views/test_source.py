@@ -50,6 +50,7 @@ async def test_escape_closes_it(tmp_path: Path) -> None:
         await s.until(lambda: [p.content.view for p in s.console.window.panes()] == ["nodes"])
 
 
+@slow
 async def test_a_file_that_is_not_there() -> None:
     """The view says that the file is missing."""
     async with stage(Content("source", "nowhere.py:3")) as s:

@@ -28,6 +28,7 @@ async def test_a_question(keys: list[str], answer: str | None) -> None:
         assert answers == [answer]
 
 
+@slow
 async def test_a_line() -> None:
     """Enter accepts the line, escape cancels."""
     async with stage() as s:
@@ -72,6 +73,7 @@ async def test_what_fits_best_comes_first() -> None:
         assert picked == ["log"]
 
 
+@slow
 async def test_nothing_to_pick() -> None:
     """The dialog says so, and enter does nothing."""
     async with stage() as s:

@@ -30,6 +30,7 @@ async def lines(**options: Any) -> AsyncIterator[tuple[Stage, LineView[Any]]]:
         yield s, made
 
 
+@slow
 async def test_only_so_many_are_kept_and_what_is_read_stays_put() -> None:
     """While the user has scrolled up, dropping the oldest lines does not move the visible ones."""
     async with lines(bound=50) as (s, made):
@@ -47,6 +48,7 @@ async def test_only_so_many_are_kept_and_what_is_read_stays_put() -> None:
         await s.until("line 54")
 
 
+@slow
 async def test_long_rows_wrap() -> None:
     """Rows are split at the width; selecting a part selects the row."""
     async with lines(wraps=True) as (s, made):

@@ -130,6 +130,7 @@ class Wide(Numbers):
     STRETCHES = True
 
 
+@slow
 @pytest.mark.parametrize(
     ("width", "shown"), [(80, "a one long"), (40, "a one long"), (28, "a long"), (20, "a one"), (12, "a")]
 )

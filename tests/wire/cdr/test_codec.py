@@ -15,7 +15,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from graphflow.errors import DecodeError
 from graphflow.msgs import registry
-from tests.cases import sample
+from tests.cases import sample, slow
 from tests.wire import slow_cdr
 from tests.wire.messages import make, message_names, plain, random_values
 
@@ -247,6 +247,7 @@ FRAGILE = [
 ]
 
 
+@slow
 @pytest.mark.parametrize("name", FRAGILE)
 def test_flipped_bits_raise_nothing_else(name: str) -> None:
     """Damaged payloads either decode or are a DecodeError; what decodes can be printed and copied."""

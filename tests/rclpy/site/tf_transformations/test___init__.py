@@ -12,9 +12,12 @@ import tf_transformations as tf
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.cases import slow
+
 angles = st.floats(-1.5, 1.5)
 
 
+@slow
 @given(angles, angles, angles)
 def test_roll_pitch_and_yaw_there_and_back(roll: float, pitch: float, yaw: float) -> None:
     """By quaternions, x first, and by matrices."""

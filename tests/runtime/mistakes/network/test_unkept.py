@@ -12,6 +12,7 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.qos import Durability, Qos
 from graphflow.runtime.mistakes.network.unkept import WARN_AFTER
 from graphflow.testing import Graph
+from tests.cases import slow
 
 Caplog = pytest.LogCaptureFixture
 
@@ -118,11 +119,12 @@ async def run(graph: Graph, server: Node, *later: Node) -> None:
         await graph.clock.advance(2 * WARN_AFTER)
 
 
+@slow
 async def test_a_map_before_the_planner(graph: Graph, caplog: Caplog) -> None:
     """Is reported once, with the line that publishes it and the profile that keeps it."""
     await run(graph, MapServer(), Planner(), Planner("other"))
     assert told(caplog) == [
-        "/map: the only message was published before the subscription of /planner opened (test_unkept.py:27), and it "
+        "/map: the only message was published before the subscription of /planner opened (test_unkept.py:28), and it "
         "is not kept for it; await the publisher's wait_matched() first, publish in a @timer, or give both "
         "Qos(depth=1, durability=Durability.TRANSIENT_LOCAL)"
     ]
@@ -133,7 +135,7 @@ async def test_a_map_in_parts(graph: Graph, caplog: Caplog) -> None:
     await run(graph, Parts(), Planner())
     [text] = told(caplog)
     assert "all 2 messages were published before" in text
-    assert "(test_unkept.py:48, test_unkept.py:52), and they are not kept for it; await " in text
+    assert "(test_unkept.py:49, test_unkept.py:53), and they are not kept for it; await " in text
     assert "or give both Qos(depth=2, " in text
 
 

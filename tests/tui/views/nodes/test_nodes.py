@@ -31,6 +31,7 @@ def supervised(s: object) -> Supervised:
     return found
 
 
+@slow
 async def test_states_have_a_glyph_and_a_word() -> None:
     """Running, ended and failed nodes differ; a live process has its resource use and uptime."""
     async with stage(Content("nodes"), nodes=("/a", "/b", "/c")) as s:
@@ -246,6 +247,7 @@ class Lived(LifecycleNode):
         raise TransitionRefused("not now")
 
 
+@slow
 async def test_a_state_that_changes_is_seen_at_once() -> None:
     """The list is updated early after events, but once for many of them."""
     async with stage(Content("nodes"), Content("topics")) as s:

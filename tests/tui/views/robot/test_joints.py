@@ -71,6 +71,7 @@ async def test_positions_of_a_publisher(graph: Graph) -> None:
         assert publisher.positions["elbow"] == pytest.approx(0.05)
 
 
+@slow
 async def test_a_robot_that_tells_its_own(graph: Graph) -> None:
     """Its positions are shown, and nothing is set against it."""
     wheel = Wheel()

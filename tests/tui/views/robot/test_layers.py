@@ -76,6 +76,7 @@ async def shown(graph: Graph, s: Stage, robot: Robot) -> None:
     await s.until("in map")
 
 
+@slow
 async def test_layers(graph: Graph) -> None:
     """Map, path, footprint and another robot are where they belong in the map's frame."""
     robot = Robot()
@@ -92,6 +93,7 @@ async def test_layers(graph: Graph) -> None:
         await s.until("two")  # drawn with the next frame
 
 
+@slow
 async def test_a_goal_that_no_node_takes(graph: Graph) -> None:
     """The message says which node would."""
     robot = Robot()

@@ -12,6 +12,7 @@ from graphflow.msgs.sensor_msgs.msg import LaserScan
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 from graphflow.tui.panes import Content
+from tests.cases import slow
 from tests.tui.stage import stage
 
 pytestmark = pytest.mark.usefixtures("graphflow_runner")
@@ -28,6 +29,7 @@ class Robot(Node):
         self.scan.publish(LaserScan(angle_increment=math.tau / 360, range_min=0.1, range_max=9.0, ranges=ranges))
 
 
+@slow
 async def test_a_scan(graph: Graph) -> None:
     """Points are where they were seen; the nearest is told; keys zoom and choose another scanner."""
     robot = Robot()

@@ -21,6 +21,7 @@ async def say(s: Stage, graph: Graph, node: Talker, *words: str) -> None:
     await s.look()
 
 
+@slow
 async def test_the_latest_message(graph: Graph) -> None:
     """The latest message is updated in place; escape sequences in it have no effect."""
     node = Talker()

@@ -180,6 +180,7 @@ def test_of_two_servers_another_may_answer(
     thread.join(LIMIT)
 
 
+@slow
 def test_both_servers_are_kept_out(start: Callable[[type[Any]], Program], caplog: pytest.LogCaptureFixture) -> None:
     """Then no answer can come."""
 
@@ -257,6 +258,7 @@ def test_what_stands_still_is_looked_into_again(start: Callable[[type[Any]], Pro
     assert program.node.done.wait(LIMIT)
 
 
+@slow
 def test_a_look_that_fails_is_not_the_last(
     start: Callable[[type[Any]], Program], monkeypatch: pytest.MonkeyPatch
 ) -> None:

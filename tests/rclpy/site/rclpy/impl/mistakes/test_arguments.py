@@ -154,6 +154,7 @@ def test_no_callback_where_ros_takes_it(node: Node, caplog: pytest.LogCaptureFix
     assert re.search(r"\(test_arguments\.py:\d+\)$", text)
 
 
+@slow
 @pytest.mark.parametrize("value", [False, 3])
 @pytest.mark.parametrize("what", ["create_timer", "create_service", "create_subscription"])
 def test_an_attribute_that_hides_the_callback(node: Node, what: str, value: object) -> None:
