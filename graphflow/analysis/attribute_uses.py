@@ -23,6 +23,7 @@ _LOOKING = {"abs", "all", "any", "bool", "dict", "enumerate", "float", "frozense
 _LOOKING |= {"len", "list", "max", "min", "print", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum"}
 _LOOKING |= {"super", "tuple", "type", "zip"}
 """Built-in functions that read their arguments and do nothing else to them."""
+_CREATORS = {"create_timer", "create_subscription", "create_service"}
 _AWAITING = {"as_completed", "create_task", "ensure_future", "gather", "isfuture", "shield", "sleep", "timeout"}
 _AWAITING |= {"timeout_at", "wait", "wait_for", "wrap_future"}
 """Functions of asyncio that only await their arguments."""
@@ -52,6 +53,7 @@ class Use:
         is_nested: Whether it is in a function or lambda inside the method, which may run at any time.
         is_started: Whether it calls an `async def` without awaiting it on the spot, so that it runs by itself.
         is_registered: Whether it is passed to one of the node's `create_...` methods, as a handler is.
+        is_lent: Whether it is passed to such a method of another object, such as `node.create_timer`.
         is_answered: Whether it is passed to the future of a response, which will call it.
         part: The whole expression with the part, if that is passed on: `self.x.y[2:]`.
     """
@@ -64,6 +66,7 @@ class Use:
     is_nested: bool = False
     is_started: bool = False
     is_registered: bool = False
+    is_lent: bool = False
     is_answered: bool = False
     part: ast.expr | None = None
 
@@ -101,7 +104,15 @@ def use_of(method: str, node: ast.Attribute | ast.Name, parents: Sequence[ast.AS
         return Use(method, node, "entered", is_nested=nested)
     kind = "read" if looks(node, around) else "given"
     is_answered = _is_for_answer(above, parents[0])
-    return Use(method, node, kind, is_nested=nested, is_registered=registers(above), is_answered=is_answered)
+    is_registered = registers(above)
+    is_lent = isinstance(above, ast.Call) and not is_registered and last_name(above.func) in _CREATORS
+    return Use(
+        *(method, node, kind),
+        is_nested=nested,
+        is_registered=is_registered,
+        is_lent=is_lent,
+        is_answered=is_answered,
+    )
 
 
 def looks(node: ast.AST, parents: Sequence[ast.AST]) -> bool:

@@ -153,7 +153,7 @@ class ClassSource:
     def _refuse_strangers(self, method: str, is_handler: bool, owner: str) -> None:
         for use in self.uses(method):
             calls = use.kind == "invoked" or method in self._properties
-            is_begun = (is_handler and use.is_registered) or use.is_answered
+            is_begun = (is_handler and (use.is_registered or (use.is_lent and owner))) or use.is_answered
             is_elsewhere = use.is_started or (owner and method in self.gathered)
             if use.is_nested or is_elsewhere or not (calls or is_begun):
                 raise Unknown

@@ -120,6 +120,7 @@ def test_what_a_statement_does_to_an_attribute(written: Written, statement: str,
         ("def inner():\n    self.x = 1", {"is_nested"}),
         ("keep(lambda: self.x.pop())", {"is_nested"}),
         ("self.create_timer(1.0, self.x)", {"is_registered"}),
+        ("node.create_timer(1.0, self.x)", {"is_lent"}),
         ("keep(self.x)", set()),
     ],
 )
@@ -127,7 +128,7 @@ def test_how_a_statement_does_it(written: Written, statement: str, flags: set[st
     """Functions inside of a method run nobody knows when; and a handler may be given to the node's own `create_`."""
     [use] = uses_of_x(written, statement)
 
-    assert {flag for flag in ("is_nested", "is_registered", "is_started") if getattr(use, flag)} == flags
+    assert {flag for flag in ("is_nested", "is_registered", "is_lent", "is_started") if getattr(use, flag)} == flags
 
 
 @pytest.mark.parametrize(

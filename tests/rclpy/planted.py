@@ -403,6 +403,54 @@ class FixedPollsAtARate(PollsAtARate):
     group = MutuallyExclusiveCallbackGroup
 
 
+class HandMadeRate:
+    """Sleeps until a timer of the node's wakes it."""
+
+    def __init__(self, node: Node, period: float = 0.1) -> None:
+        self.fired = False
+        self.timer = node.create_timer(period, self.wake)
+
+    def wake(self) -> None:
+        self.fired = True
+
+    def sleep(self) -> None:
+        while not self.fired:
+            time.sleep(0.02)  # stuck: SleepsByHand
+        self.fired = False
+
+
+class SleepsByHand(Waits):
+    def __init__(self) -> None:
+        super().__init__()
+        self.rate = HandMadeRate(self)
+
+    def tick(self) -> None:
+        self.rate.sleep()
+        self.done.set()
+
+
+class FixedSleepsByHand(SleepsByHand):
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
+class SleepsElsewhere(Waits):
+    """The rate is that of a node which another thread spins."""
+
+    elsewhere: Any = None
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.rate = HandMadeRate(self.elsewhere, 2.0)
+
+    def tick(self) -> None:
+        self.rate.sleep()
+        self.done.set()
+
+    def on_news(self, message: Any) -> None:
+        self.rate.wake()
+
+
 class SpinsIntoAFuture(Waits):
     """A future of its own, which another callback sets, in the executor that it spins itself."""
 
@@ -670,6 +718,44 @@ class FixedPollsWhatAGoalSets(PollsWhatAGoalSets):
     group = MutuallyExclusiveCallbackGroup
 
 
+class Navigator:
+    """Says whether its goal has ended, as that of Nav2 does."""
+
+    def __init__(self, node: Node) -> None:
+        self.client = ActionClient(node, Fibonacci, "count")
+        self.result: Any = None
+
+    def go(self) -> None:
+        self.client.send_goal_async(Fibonacci.Goal(order=3)).add_done_callback(self.accepted)
+
+    def accepted(self, future: Any) -> None:
+        future.result().get_result_async().add_done_callback(self.on_result)
+
+    def on_result(self, future: Any) -> None:
+        self.result = future.result().result
+
+    def is_task_complete(self) -> bool:
+        return self.result is not None
+
+
+class PollsANavigator(PollsWhatAGoalSets):
+    def __init__(self) -> None:
+        super().__init__()
+        self.navigator = Navigator(self)
+
+    def tick(self) -> None:
+        self.timer.cancel()
+        self.navigator.go()
+        while not self.navigator.is_task_complete():
+            time.sleep(0.02)  # stuck: PollsANavigator
+        self.done.set()
+
+
+class FixedPollsANavigator(PollsANavigator):
+    threads = 2
+    group = MutuallyExclusiveCallbackGroup
+
+
 class DrivesThere(Waits):
     """Its loop sends messages, whose fields are called as what it waits for."""
 
@@ -818,6 +904,8 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (PollsTheResult, FixedPollsTheResult, OWN),
     (WaitsForALambda, FixedWaitsForALambda, OWN),
     (PollsAtARate, FixedPollsAtARate, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (SleepsByHand, FixedSleepsByHand, "wake, which sets it, is kept out"),
+    (PollsANavigator, FixedPollsANavigator, "what follows the answer of /count, which sets it, is kept out"),
     (
         SpinsIntoAFuture,
         FixedSpinsIntoAFuture,

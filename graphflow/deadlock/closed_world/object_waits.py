@@ -22,6 +22,7 @@ from graphflow.deadlock.closed_world.wakers import (
     BEGINNINGS,
     Question,
     Setters,
+    entries_of,
     handlers_above,
 )
 from graphflow.deadlock.protocols import Subject
@@ -99,7 +100,7 @@ class OwnedQuestion(Question):
         return super()._changes(name)
 
     def changing(self, names: set[str], loop: Loop, below: set[str]) -> set[str]:
-        """Return the methods of the node that change attributes of the object which a loop of the node's polls.
+        """Return the methods that change attributes of the object which a loop of the node's polls.
 
         Args:
             names: The attributes.
@@ -115,10 +116,32 @@ class OwnedQuestion(Question):
         is_own = any(use.kind == "changed" and use.name in names and self._ends(use, source) for use in own)
         if is_own or changing & run or self._source.may_fail(loop, run):
             raise Unknown
-        return self._ending(changing)
+        return self._ending(changing) | self._called_back(self._own_ending(changing))
 
     def _reached(self, what: str, methods: Iterable[str]) -> Setters | None:
-        return handlers_above(what.replace("self.", f"self.{self.owner}."), self._ending(methods), self._node)
+        what = what.replace("self.", f"self.{self.owner}.")
+        found = handlers_above(what, self._ending(methods), self._node)
+        called = self._called_back(self._own_ending(methods))
+        if not called:
+            return found
+        return Setters(what, called) if found is None else found._replace(handlers=found.handlers | called)
+
+    def _called_back(self, methods: set[str]) -> frozenset[str]:
+        """Return which methods of the object are callbacks of the node's, as in `rate.fire`.
+
+        Raises:
+            Unknown: One of them may be called by another node.
+        """
+        found = {f"{self.owner}.{name}" for name in methods} & entries_of(self._node)
+        for name in methods:
+            given = sum(use.is_lent or use.is_registered for use in self._source.uses(name))
+            if given > (f"{self.owner}.{name}" in found):
+                raise Unknown
+        return frozenset(found)
+
+    def _own_ending(self, methods: Iterable[str]) -> set[str]:
+        """Return the methods of the object that end the wait, and those that call them."""
+        return self._source.above(set(methods) - _MADE_BY, set(self._source.methods), self.owner)
 
     def _ending(self, methods: Iterable[str]) -> set[str]:
         """Return the methods of the node that end the wait: through the object's methods, or by access to its parts.
@@ -126,7 +149,7 @@ class OwnedQuestion(Question):
         Raises:
             Unknown: The node does not own the object, or other code may do so.
         """
-        ending = self._source.above(set(methods) - _MADE_BY, set(self._source.methods), self.owner)
+        ending = self._own_ending(methods)
         source = source_of(self._node.instance)
         uses = source.uses(self.owner)
         if source.foreign(self.owner) or any(self._escapes(use, ending) for use in uses):

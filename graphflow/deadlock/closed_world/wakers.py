@@ -145,8 +145,9 @@ def handler_in(title: str) -> str:
 
 
 def handler_of(runner: Runner) -> str:
-    """Return the method that a runner calls, or `LAMBDA`."""
-    return runner.spec.handler if runner.spec.handler.isidentifier() else LAMBDA
+    """Return the method that a runner calls, as `tick`, or `rate.fire` for an object's in `self.rate`; or `LAMBDA`."""
+    handler = runner.spec.handler
+    return handler if all(name.isidentifier() for name in handler.split(".")) else LAMBDA
 
 
 class Question:

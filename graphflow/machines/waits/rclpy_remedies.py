@@ -156,6 +156,7 @@ def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> list
             return [f"look it up without a timeout in {place},", f"and again when {handler} is called next"]
         case SetBy(what=what, is_held=False, queues=queues):
             others = " or ".join(_handlers([name for name in queues if name != _own(holder, graph)], graph))
+            others = others or "the callback that sets it"
             if answers:
                 future = f"and await a rclpy.task.Future that {others} sets"
                 return [f"do not block in {place}:", f"make {handler} async def with {_EXCLUSIVE},", future]

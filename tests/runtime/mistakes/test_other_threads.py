@@ -139,7 +139,8 @@ def test_what_a_thread_does_to_the_loop(monkeypatch: pytest.MonkeyPatch, caplog:
             future.set_result(None)
             loop.call_soon_threadsafe(print)
 
-        await in_a_thread(vendor)
+        with ThreadPoolExecutor(1, "vendor") as pool:
+            pool.submit(vendor).result()  # the loop stands still: it may not change what the thread goes through
         await waiting
         lines = [vendor.__code__.co_firstlineno + n for n in (2, 3, 4)]
         ways = ["queue.put_nowait, ...", "event.set", "future.set_result, ..."]

@@ -55,7 +55,7 @@ def role_of(entity: Entity) -> Role:
     if isinstance(entity, ActionServer):
         return Role("action", name_of(callbacks_of(entity).execute) or internals_of(entity).action_name)
     kind = next((word for cls, word in _KINDS.items() if isinstance(entity, cls)), "waitable")
-    callback = getattr(entity, "callback", None)
+    callback = callback_of(entity)
     if isinstance(getattr(callback, "__self__", None), Rate):
         return Role("timer", "rate", is_inner=True)
     code = getattr(callback, "__code__", None)
@@ -66,12 +66,30 @@ def role_of(entity: Entity) -> Role:
     return Role(kind, name_of(callback) or type(entity).__name__, is_inner)
 
 
+def callback_of(entity: Entity) -> object:
+    """Return the callback of an entity that has one; else None."""
+    return getattr(entity, "callback", None)
+
+
 def name_of(callback: object) -> str:
     """Return a function's name; empty for other callables."""
     # Programs bind arguments with `functools.partial`, which has no name of its own.
     while isinstance(callback, partial):
         callback = callback.func
     return str(getattr(callback, "__name__", ""))
+
+
+def method_of(callback: object, node: Node | None) -> str:
+    """Return the method that a callback calls: `tick` of the node, `rate.fire` of the object in `self.rate`; or ""."""
+    while isinstance(callback, partial):
+        callback = callback.func
+    owner, name = getattr(callback, "__self__", None), name_of(callback)
+    if owner is None or node is None:
+        return ""
+    if owner is node:
+        return name
+    attribute = next((attribute for attribute, value in list(vars(node).items()) if value is owner), "")
+    return f"{attribute}.{name}" if attribute else ""
 
 
 def full_name(node: Node | None) -> str:
@@ -130,7 +148,7 @@ def _answers(endpoint: ThreadedClient) -> tuple[tuple[str, ...], int]:
 
 
 def after_answers(entity: Entity, node: Node | None) -> Iterator[str]:
-    """Return the node's methods that run after an answer for which a client waits."""
+    """Return the methods of the node, or of objects in it, that run after an answer for which a client waits."""
     futures: list[Future] = []
     if isinstance(entity, Client):
         futures = list(entity.pending_requests.values())
@@ -138,8 +156,8 @@ def after_answers(entity: Entity, node: Node | None) -> Iterator[str]:
         futures = [future for future, _ in list(internals_of(entity).waiting.values())]
     for future in futures:
         for callback in future.done_callbacks():
-            if getattr(callback, "__self__", None) is node:
-                yield name_of(callback)
+            if method := method_of(callback, node):
+                yield method
             elif any(_content(cell) is node for cell in getattr(callback, "__closure__", None) or ()):
                 yield ANSWERED
 

@@ -23,7 +23,7 @@ from rclpy.impl.deadlock.later_servers import opening_of, tries_forever
 from rclpy.impl.deadlock.locks import Entering, only_holder
 from rclpy.impl.deadlock.stacks import Level
 from rclpy.impl.deadlock.subjects import subject_of
-from rclpy.impl.entities import after_answers, name_of
+from rclpy.impl.entities import after_answers, callback_of, method_of, name_of
 from rclpy.impl.nodes import internals_of
 from rclpy.impl.spinning import Run
 
@@ -167,7 +167,7 @@ class Conditions:
     def _world(self, node: Node) -> tuple[list[tuple[Entity, str]], list[Run], Subject]:
         """Return a node's callbacks by entity, the tasks that run its methods, and the node as a subject."""
         own = [
-            (entity, role.handler)
+            (entity, method_of(callback_of(entity), node) or role.handler)
             for entity, role in self._reading.roles.items()
             if self._reading.owners[entity] is node
         ]

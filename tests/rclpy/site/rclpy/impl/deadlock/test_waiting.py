@@ -69,6 +69,10 @@ class Program:
             self.node.items.put(None)
         if hasattr(self.node, "flag"):
             self.node.flag = True
+        if isinstance(getattr(self.node, "rate", None), planted.HandMadeRate):
+            self.node.rate.fired = True
+        if hasattr(self.node, "navigator"):
+            self.node.navigator.result = "no more"
         if hasattr(self.node, "store") and self.node.store.lock.locked():
             self.node.store.lock.release()
         self.thread.join(LIMIT)
@@ -155,6 +159,25 @@ class TwoServers(planted.Asker):
     def tick(self) -> None:
         self.client.call(Trigger.Request())
         self.done.set()
+
+
+@slow
+def test_a_rate_of_another_node(
+    start: Callable[[type[Any]], Program], caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its timer fires while the node itself waits."""
+    rclpy.init()
+    other, executor = Node("other"), SingleThreadedExecutor()
+    executor.add_node(other)
+    thread = threading.Thread(target=spin, args=(executor,))
+
+    monkeypatch.setattr(planted.SleepsElsewhere, "elsewhere", other)
+    thread.start()
+    program = start(planted.SleepsElsewhere)
+    assert program.node.done.wait(LIMIT)
+    assert not reports(caplog)
+    rclpy.try_shutdown()
+    thread.join(LIMIT)
 
 
 @slow
