@@ -159,11 +159,17 @@ def _duration(value: Duration | DurationFields) -> Duration:
     return Duration.from_msg(value) if isinstance(value, DurationFields) else value
 
 
+FROM_SECONDS: Mapping[str, str] = {
+    "Duration": "Duration.of(seconds)",
+    "Time": "self.clock.now(), or Time(round(seconds * 1e9))",
+}
+"""How a duration and a time are made from seconds."""
+
+
 def _refuse_fraction(name: str, value: object) -> None:
     """Raise TypeError for a number of nanoseconds that is not of an integer type."""
     if not hasattr(value, "__index__"):
-        way = "Duration.of(seconds)" if name == "Duration" else "self.clock.now(), or Time(round(seconds * 1e9))"
-        raise TypeError(f"{name} takes whole nanoseconds, not {value!r}; write {way}")
+        raise TypeError(f"{name} takes whole nanoseconds, not {value!r}; write {FROM_SECONDS[name]}")
 
 
 @dataclass(frozen=True, order=True, slots=True)

@@ -20,6 +20,7 @@ from graphflow.bag.recording.rate_limit import RateLimit
 from graphflow.bag.topic_choice import EVENTS, Choice
 from graphflow.bag.writer import BagWriter
 from graphflow.errors import BagError, GraphflowError, printable
+from graphflow.names import did_you_mean
 from graphflow.qos import BEST_AVAILABLE, Qos
 from graphflow.runtime.endpoints import raw
 from graphflow.runtime.endpoints.serialized import RawSubscription
@@ -121,6 +122,17 @@ class Recorder:
         """Topics that were named and have not appeared."""
         events = {f"{service}{EVENTS}" for service in self._choice.services}
         return sorted((self._choice.topics | events) - self._subscriptions.keys())
+
+    @property
+    def unused_options(self) -> list[str]:
+        """Sentences about topics that have a rate or are to be repeated, but are not recorded."""
+        named = {"a rate": self._gates, "messages to repeat": self._writer.repeats.topics}
+        return [
+            f"{name} has {what}, but is not recorded{did_you_mean(name, self._subscriptions)}"
+            for what, names in named.items()
+            for name in sorted(names)
+            if name not in {*self._subscriptions, *self.missing}
+        ]
 
     @property
     def size(self) -> int:

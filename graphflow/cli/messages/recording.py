@@ -206,10 +206,12 @@ async def _warn_later(node: Node, recorder: Recorder) -> None:
 
 
 def _warn_of_missing(node: Node, recorder: Recorder) -> None:
-    """Warn about topics that were named but have not appeared."""
+    """Warn about topics that were named, to be recorded or with an option, but have not appeared."""
     for name in recorder.missing:
         service, cache = name.removesuffix(EVENTS), node.context.cache
         output.talk(f"WARNING: {cache.unpublished(name) if service == name else cache.without_events(service)}")
+    for text in recorder.unused_options:
+        output.talk(f"WARNING: {text}")
 
 
 async def _show(recorder: Recorder, began: float) -> None:

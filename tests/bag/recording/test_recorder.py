@@ -275,9 +275,20 @@ async def test_a_rate(graph: Graph, session: Session) -> None:
         other.publish(String())
         await graph.clock.advance(0.1)
     await session.until(lambda: recorder.recorded == 24)
+    assert recorder.unused_options == []
     bag = await session.end()
     assert bag.contents.counts == {"/chatter": 4, "/other": 20}
     assert (recorder.lost, recorder.dropped) == (0, 0)
+
+
+async def test_options_of_topics_that_are_not_recorded(graph: Graph, session: Session) -> None:
+    """They are named with the nearest topic, but not where the topic itself is reported as missing."""
+    await speaker(graph)
+    recorder = await session.start(
+        Choice(topics=frozenset({"/chatter", "/late"})), rates={"/chater": 2.0, "/late": 1.0}
+    )
+    await session.until(lambda: recorder.topics == 1)
+    assert recorder.unused_options == ["/chater has a rate, but is not recorded; did you mean '/chatter'?"]
 
 
 async def test_what_every_snapshot_begins_with(graph: Graph, tmp_path: Path) -> None:

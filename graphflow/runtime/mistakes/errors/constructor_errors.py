@@ -1,6 +1,7 @@
-"""Advice on TypeErrors of message constructors.
+"""Advice on TypeErrors of the constructors of messages and times.
 
-The constructors are written in C, and their errors do not name the class: it is read from the line of the call.
+The constructors of messages are written in C, and their errors do not name the class: it is read from the line of the
+call.
 """
 
 from __future__ import annotations
@@ -10,14 +11,21 @@ import linecache
 import re
 from types import FrameType, ModuleType, TracebackType
 
+from graphflow import times
 from graphflow.msgs.base import Action, Message, Service, name_of, no_field
 
 _UNKNOWN = re.compile(r"Unexpected keyword argument '(\w+)'\Z")
+_OF_TIMES = re.compile(
+    rf"({'|'.join(times.FROM_SECONDS)})\.__init__\(\) got an unexpected keyword argument '(?:sec|seconds)'\Z"
+)
 _BY_POSITION = "Extra positional arguments provided"
 
 
 def better_text(error: TypeError) -> str:
-    """Return a better text for a message constructor's error; "" for other errors."""
+    """Return a better text for the error of such a constructor; "" for other errors."""
+    if found := _OF_TIMES.match(str(error)):
+        is_ours = _called(error.__traceback__) is vars(times)[found[1]]
+        return f"{error}; write {times.FROM_SECONDS[found[1]]}" if is_ours else ""
     unknown = _UNKNOWN.match(str(error))
     if not unknown and str(error) != _BY_POSITION:
         return ""

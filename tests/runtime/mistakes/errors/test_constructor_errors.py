@@ -15,6 +15,7 @@ from functools import partial
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.std_msgs.msg import Empty, String
 from graphflow.msgs.geometry_msgs import msg as geometry_msgs
+from graphflow.times import Duration, Time
 twice = [String, String]
 text = partial(String, 1)
 class Mine:
@@ -38,6 +39,15 @@ def report(folder: Path, line: str) -> str:
         ("String(dat='x')", "String has no field 'dat'; did you mean 'data'?"),
         ("print('é', String(\n    dat='é',\n))", "String has no field 'dat'; did you mean 'data'?"),
         ("String('x')", "String takes its fields by keyword: String(data=...)"),
+        (
+            "Duration(seconds=1.0)",
+            "Duration.__init__() got an unexpected keyword argument 'seconds'; write Duration.of(seconds)",
+        ),
+        (
+            "Time(seconds=1.0)",
+            "Time.__init__() got an unexpected keyword argument 'seconds'; "
+            "write self.clock.now(), or Time(round(seconds * 1e9))",
+        ),
         ("Empty(1)", "Empty takes its fields by keyword: Empty()"),
         ("geometry_msgs.Point(1.0, y=2.0)", "Point takes its fields by keyword: Point(x=...)"),
         ("Fibonacci.Goal(ordr=3)", "Fibonacci.Goal has no field 'ordr'; did you mean 'order'?"),
