@@ -17,7 +17,7 @@ _BUILT_IN = "its verbs are built in; graphflow pkg executables lists the program
 NOT_NEEDED = {
     "daemon": "none is needed: there is no daemon",
     "multicast": "none is needed: a graph stays on this machine unless `--net` or `--connect` says otherwise",
-    **dict.fromkeys(("extensions", "extension_points"), _BUILT_IN),
+    **dict.fromkeys(("extensions", "extension_points", "extension-points"), _BUILT_IN),
     "security": "a graph is reachable from this machine only unless `--net` says otherwise",
 }
 """Verbs of `ros2` that graphflow does not need: the reason, or what to use instead."""

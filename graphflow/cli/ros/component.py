@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
@@ -39,7 +40,7 @@ def list_(container: str | None, containers_only: bool, as_json: bool, graph: st
     """List the processes of a graph and the nodes in each."""
     found = _containers(choose(graph).socket)
     if container is not None:
-        name = container if container in found else f"/{container.lstrip('/')}"
+        name = _known_name(container, found)
         if name not in found:
             raise SupervisorError(f"the graph has no process {container!r}{did_you_mean(container, found)}")
         found = {name: found[name]}
@@ -104,6 +105,7 @@ def load(
     if problems:
         raise GraphFileError(problems)
     refuse_taken_names([node.name], run.domain, hint="give this one another name with -n NAME")
+    container = _known_name(container, _containers(run.socket))
     answer = _ask(run.socket, do="load", container=container, node=node.to_json())
     if extra:
         output.talk(f"{', '.join(extra)}: not needed, messages within a process are always passed without copying")
@@ -143,7 +145,9 @@ def standalone(package: str, plugin: str, **options: Any) -> None:
 def unload(container: str, words: tuple[str, ...], graph: str | None) -> None:
     """Unload nodes from a running process. `component list` shows their numbers and names."""
     run = choose(graph)
-    numbers = [int(word) if word.isdecimal() else _number_of(word, container, run.socket) for word in words]
+    found = _containers(run.socket)
+    container = _known_name(container, found)
+    numbers = [int(word) if word.isdecimal() else _number_of(word, container, found) for word in words]
     for number in numbers:
         _ask(run.socket, do="unload", container=container, number=number)
         output.data(f"Unloaded component {number} from '{container}' container node")
@@ -173,14 +177,19 @@ def _containers(socket: str) -> dict[str, list[NodeRow]]:
     return {name: list(rows) for name, rows in groupby(node_rows(socket), lambda row: row["process"] or row["node"])}
 
 
-def _number_of(node: str, container: str, socket: str) -> int:
+def _known_name(container: str, known: Collection[str]) -> str:
+    """Return the name of a process, which may be given with or without a slash: ROS 2's are nodes."""
+    name = container.lstrip("/")
+    return next((form for form in (container, f"/{name}", name) if form in known), container)
+
+
+def _number_of(node: str, container: str, containers: Mapping[str, list[NodeRow]]) -> int:
     """Return the number of a node in a process.
 
     Raises:
         SupervisorError: The process has no such node.
     """
-    found = _containers(socket)
-    rows = {row["node"]: row["number"] for row in found.get(f"/{container.lstrip('/')}", found.get(container, []))}
+    rows = {row["node"]: row["number"] for row in containers.get(container, [])}
     name = f"/{node.lstrip('/')}"
     if name not in rows:
         raise SupervisorError(f"process {container!r} has no node {name}{did_you_mean(name, rows)}")

@@ -25,6 +25,8 @@ def lifecycle() -> None:
 
 
 _hidden = click.option("-a", "--all", "--include-hidden-nodes", "hidden", is_flag=True, help="Include hidden nodes.")
+_found_anyway = click.option("--include-hidden-nodes", is_flag=True, hidden=True, expose_value=False)
+"""ROS 2's option of verbs that name their node."""
 _timeout = click.option("--timeout", type=click.FloatRange(0, min_open=True), default=2.0, help="Seconds to wait.")
 
 
@@ -74,6 +76,7 @@ def get(name: str | None, hidden: bool, timeout: float, as_json: bool) -> None:
 @click.option(
     "-a", "--all", "everything", is_flag=True, help="Show the transitions of all states, not only of the current one."
 )
+@_found_anyway
 @_timeout
 @click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 def list_(name: str, everything: bool, timeout: float, as_json: bool) -> None:
@@ -92,6 +95,7 @@ def list_(name: str, everything: bool, timeout: float, as_json: bool) -> None:
 @lifecycle.command(name="set")
 @click.argument("name", metavar="NODE")
 @click.argument("transition", metavar="TRANSITION")
+@_found_anyway
 @click.option(
     "--timeout", type=click.FloatRange(0, min_open=True), default=60.0, show_default=True, help="Seconds to wait."
 )

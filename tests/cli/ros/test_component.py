@@ -35,7 +35,7 @@ def test_nodes_come_and_go(machine: Machine) -> None:
     assert "/news" in machine.look("node", "info", "/room/ear")
     rows = {row["node"]: row for row in json.loads(machine.look("ps", "--json"))}
     assert rows["/room/ear"]["pid"] == rows["/talker"]["pid"]
-    assert machine.look("component", "unload", "tutorial", "2", "/talker") == (
+    assert machine.look("component", "unload", "/tutorial", "2", "/talker") == (
         "Unloaded component 2 from 'tutorial' container node\nUnloaded component 1 from 'tutorial' container node\n"
     )
     assert machine.look("node", "list") == "/alone\n/room/ear\n"

@@ -30,7 +30,10 @@ def test_a_life(machine: Machine) -> None:
     )
     assert len(json.loads(machine.look("lifecycle", "list", "lc_talker", "-a", "--json"))) == 25
     for transition in ("deactivate", "2", "configure"):
-        assert machine.look("lifecycle", "set", "/lc_talker", transition) == "Transitioning successful\n"
+        assert (
+            machine.look("lifecycle", "set", "--include-hidden-nodes", "/lc_talker", transition)
+            == "Transitioning successful\n"
+        )
     assert json.loads(machine.look("lifecycle", "get", "--json")) == {"/lc_talker": {"id": 2, "label": "inactive"}}
     assert "inactive " in machine.look("ps")
     told = machine.look("lifecycle", "set", "/lc_talker", "configure", code=1)
