@@ -1,8 +1,11 @@
-"""Hints for an empty listing: other domains that have nodes."""
+"""Hints for an empty listing, and for topics without messages: other domains, and net profiles."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from graphflow.domain import domain_id
+from graphflow.introspect.graph_view import View
 from graphflow.machines.domains import COMMANDS, SHOWN, by_domain, remedy
 from graphflow.transport.client import Client
 from graphflow.wire.liveliness import NODES
@@ -27,3 +30,9 @@ def nothing_here(what: str) -> str:
     is_one = counts[0][1] == 1
     listing = ", ".join(f"{n} node{'s' if n > 1 else ''} in domain {d}" for d, n in counts)
     return f"{what} in domain {here}; there {'is' if is_one else 'are'} {listing}: {remedy(COMMANDS, others)}"
+
+
+def why_silent(topics: Iterable[str]) -> str:
+    """Describe what may keep the messages of one of some topics from this machine; empty if nothing is known to."""
+    with View(domain_id()) as view:
+        return next(filter(None, map(view.why_silent, topics)), "")

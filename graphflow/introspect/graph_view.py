@@ -225,6 +225,17 @@ class View:
             return ""
         return net.refusal(name, self.profiles())
 
+    def why_silent(self, topic: str) -> str:
+        """Describe what may keep the messages of a topic from this machine; empty if nothing is known to."""
+        publishers = {e.zid for e in self.cache.endpoints(Kind.PUBLISHER, topic)}
+        if not publishers or not publishers.isdisjoint(self.processes()) or not self._is_linked():
+            return ""
+        beyond = f"{topic} is published on another machine, whose net profile may not pass it: add it to `allow` there"
+        return self.kept_back(topic, Kind.PUBLISHER) or beyond
+
+    def _is_linked(self) -> bool:
+        return bool(self.profiles()) or reaches_out()
+
     def is_there(self, name: str) -> bool:
         """Whether a node exists, rather than only its liveliness token, which anybody can announce.
 
@@ -267,7 +278,7 @@ class View:
         self.refresh()
         here = self.processes()
         still = [e for e in self.cache.endpoints(Kind.SERVICE, name) if e.type == type_name and e.zid not in here]
-        if still and (self.profiles() or reaches_out()):
+        if still and self._is_linked():
             why = "the net profile of its machine does not pass the call: add it to `allow` on both"
             return f"{name} is announced, and does not answer: {why}"
         return f"{name}: the server went away before it answered{self._stopped()}"

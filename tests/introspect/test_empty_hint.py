@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Self
+
 import pytest
 
 from graphflow.introspect import empty_hint
-from graphflow.introspect.empty_hint import nothing_here
+from graphflow.introspect.empty_hint import nothing_here, why_silent
 
 
 class Seen:
@@ -45,3 +47,26 @@ def test_where_nodes_run(nodes: list[str], text: str, monkeypatch: pytest.Monkey
     monkeypatch.setattr(empty_hint, "Client", Seen)
     Seen.tokens_ = [f"@ros2_lv/{n.split('/')[0]}/z/{i}/{i}/NN/%/%/{n.split('/')[1]}" for i, n in enumerate(nodes)]
     assert nothing_here("no nodes") == f"no nodes in domain 5{', ' if text.startswith('and') else '; '}{text}"
+
+
+def test_topics_without_messages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first reason that is known."""
+
+    class View:
+        """Knows why one topic is silent."""
+
+        def __init__(self, domain: int) -> None:
+            self.reasons = {"/b": "a net profile"}
+
+        def __enter__(self) -> Self:
+            return self
+
+        def __exit__(self, *_: object) -> None:
+            """Nothing is open."""
+
+        def why_silent(self, topic: str) -> str:
+            return self.reasons.get(topic, "")
+
+    monkeypatch.setattr(empty_hint, "View", View)
+    assert why_silent(["/a", "/b"]) == "a net profile"
+    assert why_silent(["/a"]) == ""

@@ -185,6 +185,30 @@ def test_a_net_profile_is_told(view: View, client: Client, zid: str, allow: list
     assert view.owner("/office/ros").endswith(f"beyond the net profile /lab.yaml, which allows {allow[0]}")
 
 
+NEWS = Entity(7, "z9", 0, 1, Kind.PUBLISHER, "/", "ros", "/news", "std_msgs/msg/String", "RIHS01_0")
+BEYOND = "/news is published on another machine, whose net profile may not pass it: add it to `allow` there"
+
+
+@pytest.mark.parametrize(
+    ("publishers", "allow", "text"),
+    [
+        ([NEWS], ["/chat"], "/news does not pass the net profile /lab.yaml, which allows /chat; if its node is on"),
+        ([NEWS], ["/news"], BEYOND),
+        ([NEWS], [], ""),
+        ([NEWS, NEWS._replace(zid="z1")], ["/chat"], ""),
+        ([], ["/chat"], ""),
+    ],
+)
+def test_what_keeps_messages_back(
+    view: View, client: Client, publishers: list[Entity], allow: list[str], text: str
+) -> None:
+    """A net profile, here or there, if all publishers are beyond a link; nothing else is known."""
+    client.profiles = [net.token(7, "z5", "/lab.yaml", allow)] if allow else []
+    client.entities = [CLERK, *publishers]
+    view.refresh()
+    assert view.why_silent("/news")[: len(text) or None] == text
+
+
 @pytest.mark.parametrize(
     ("other", "text"),
     [

@@ -201,11 +201,20 @@ CERTIFICATES = """\
 listen: {listen}
 connect: [{connect}]
 tls: {{ca: {ca}, certificate: {certificate}, key: {key}}}
-allow: [/turtle1/**, /spawn]
+allow: [{allow}]
 """
 
 
-def profile(folder: Path, name: str, ca: trustme.CA, address: str, *, listen: str = "null", connect: str = "") -> str:
+def profile(
+    folder: Path,
+    name: str,
+    ca: trustme.CA,
+    address: str,
+    *,
+    listen: str = "null",
+    connect: str = "",
+    allow: str = "/turtle1/**, /spawn",
+) -> str:
     """Write a net profile with a certificate of its own; returns its path."""
     issued = ca.issue_cert(address)
     files = {n: folder / f"{name}.{n}" for n in ("ca", "certificate", "key")}
@@ -213,7 +222,9 @@ def profile(folder: Path, name: str, ca: trustme.CA, address: str, *, listen: st
     issued.cert_chain_pems[0].write_to_path(files["certificate"])
     issued.private_key_pem.write_to_path(files["key"])
     path = folder / f"net_{name}.yaml"
-    path.write_text(CERTIFICATES.format(listen=listen, connect=connect, **{k: str(v) for k, v in files.items()}))
+    path.write_text(
+        CERTIFICATES.format(listen=listen, connect=connect, allow=allow, **{k: str(v) for k, v in files.items()})
+    )
     return str(path)
 
 
@@ -226,7 +237,8 @@ def test_a_net_profile_lets_in_who_has_a_certificate_and_out_what_is_allowed(
     ca, stranger = trustme.CA(), trustme.CA()
     endpoint = f"tls/{hosts.far.address}:7448"
     there = profile(tmp_path, "far", ca, hosts.far.address, listen="tls/0.0.0.0:7448")
-    here = profile(tmp_path, "near", ca, hosts.near.address, connect=endpoint)
+    more = "/turtle1/**, /spawn, /news"
+    here = profile(tmp_path, "near", ca, hosts.near.address, connect=endpoint, allow=more)
     other = profile(tmp_path, "other", stranger, hosts.near.address, connect=endpoint)
     far.start("--net", there, "run", "nodes.turtlesim:TurtleSim").wait_for("Spawning")
 
@@ -248,8 +260,11 @@ def test_a_net_profile_lets_in_who_has_a_certificate_and_out_what_is_allowed(
     )
     (tmp_path / "killer.py").write_text(KILLER)
     killer = near.start("run", "killer.py", cwd=tmp_path)
-    killer.wait_for(f"/kill does not pass the net profile {here}, which allows /turtle1/**, /spawn; if its node is on")
+    killer.wait_for(f"/kill does not pass the net profile {here}, which allows {more}; if its node is on")
     killer.end()
+    far.start("topic", "pub", "-r", "5", "/news", "std_msgs/msg/String", "{data: x}").wait_for("publishing")
+    silent = near.run("topic", "echo", "/news", "--timeout", "7", code=4)
+    assert "/news is published on another machine, whose net profile may not pass it" in silent
     assert graph.end(signal.SIGTERM) == 0
 
 

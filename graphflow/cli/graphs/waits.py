@@ -93,13 +93,14 @@ def show(node: str, as_json: bool) -> None:
     """List a node's groups and the handlers in each."""
     with View(domain_id()) as view:
         full = view.node(node)
-        read = _read(view)
-    _show(full, _groups_of(read, full), as_json=as_json)
+        rows = _groups_of(view, full)
+    _show(full, rows, as_json=as_json)
 
 
-def _groups_of(read: found.ConcurrencyReport, node: str) -> list[found.GroupRow]:
+def _groups_of(view: View, node: str) -> list[found.GroupRow]:
+    read = _read(view)
     if node not in read.nodes:
-        raise UsageFault(f"{node} is not a graphflow node, or is on another machine, so its groups are unknown")
+        raise UsageFault(f"the groups of {node} are unknown: it runs in {view.owner(node)}")
     return read.nodes[node]
 
 
@@ -171,7 +172,7 @@ def thread(node: str, handlers: tuple[str, ...], name: str | None) -> int:
 
     with View(domain_id()) as view:
         full = view.node(node)
-        known = {h["handler"]: h for group in _groups_of(_read(view), full) for h in group["handlers"]}
+        known = {h["handler"]: h for group in _groups_of(view, full) for h in group["handlers"]}
     for handler in handlers:
         if handler not in known:
             near = did_you_mean(handler, known)

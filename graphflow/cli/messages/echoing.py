@@ -10,6 +10,7 @@ from graphflow.cli import exits, output
 from graphflow.cli.messages.conditions import compile_condition
 from graphflow.cli.messages.echo_options import EchoOptions
 from graphflow.cli.temporary_node import run_with_node
+from graphflow.introspect.empty_hint import why_silent
 from graphflow.introspect.messages.echo import block, csv, flow, plain, truncated
 from graphflow.introspect.messages.fields import Path, field_path, value_at
 from graphflow.msgs import registry
@@ -24,6 +25,8 @@ from graphflow.wire.liveliness import Kind
 
 _EVENTS = {0: "REQUEST_SENT", 1: "REQUEST_RECEIVED", 2: "RESPONSE_SENT", 3: "RESPONSE_RECEIVED"}
 """Events of a service with introspection: service_msgs/msg/ServiceEventInfo."""
+SILENT = 5.0
+"""Seconds without a first message after which a net profile that may not pass the topic is reported."""
 DISCOVERY = 0.2
 """Seconds to wait for the topic's publishers to be discovered."""
 
@@ -56,12 +59,15 @@ async def _echo(
     else:
         type_: Any = registry.interface_class(type_name)
         subscription = node.create_subscription(type_, topic, None, options.qos, on_event=on_event)
+    warned = asyncio.ensure_future(_warn_of_silence(node, topic))
     try:
         async with node.clock.timeout(options.timeout or float(10**9)):
             message, info = await subscription.next_with_info()
     except TimeoutError:
         output.error(f"no message on {topic} within {options.timeout:g} s")
         return exits.TIMEOUT
+    finally:
+        warned.cancel()
     while True:
         if wanted is None or wanted(message):
             if options.clear:
@@ -96,6 +102,12 @@ class _Raw:
             payload, info = await self._queue.get()
             if self._wanted is None or self._decode is None or self._wanted(self._decode(payload)):
                 return payload, info
+
+
+async def _warn_of_silence(node: Node, topic: str) -> None:
+    await node.clock.sleep(SILENT)
+    if text := await node.offload(why_silent, [topic]):
+        output.talk(f"WARNING: {text}")
 
 
 def _report_loss(event: QosEvent) -> None:

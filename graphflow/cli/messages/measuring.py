@@ -9,10 +9,8 @@ from itertools import islice
 from graphflow.cli import output
 from graphflow.cli.messages.conditions import compile_condition
 from graphflow.cli.temporary_node import run_with_node
-from graphflow.domain import domain_id
 from graphflow.errors import DecodeError, UsageFault
-from graphflow.introspect.empty_hint import nothing_here
-from graphflow.introspect.graph_view import View
+from graphflow.introspect.empty_hint import nothing_here, why_silent
 from graphflow.introspect.messages.rates import Arrivals, Delays, Weights, table
 from graphflow.msgs import registry
 from graphflow.qos import BEST_AVAILABLE, Durability
@@ -182,10 +180,4 @@ async def _warn_of_silence(node: Node, topics: list[str], unpublished: Collectio
     if unpublished and not cache.nodes(hidden=False):
         output.talk(await node.offload(nothing_here, "no nodes"))
     if not unpublished:
-        output.talk(await node.offload(_why_silent, topics))
-
-
-def _why_silent(topics: list[str]) -> str:
-    """Return the net profile that does not pass one of the topics, or that there are no new messages."""
-    with View(domain_id()) as view:
-        return next(filter(None, (view.kept_back(topic, Kind.PUBLISHER) for topic in topics)), "no new messages")
+        output.talk(await node.offload(why_silent, topics) or "no new messages")
