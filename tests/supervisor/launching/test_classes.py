@@ -185,6 +185,9 @@ def test_a_module_of_another_project(tmp_path: Path, root: str) -> None:
     (tmp_path / "mylab" / "pyproject.toml").touch()
     text = _no_module("mylab.greeter", "mylab.greeter", "Greeter", str(tmp_path / root))
     assert text.endswith(f"others find its modules once it is installed: pip install -e {tmp_path / 'mylab'}")
+    (tmp_path / "mylab" / "mylab").rmdir()
+    text = _no_module("mylab.greeter", "mylab.greeter", "Greeter", str(tmp_path / root))
+    assert "is a project of its own" not in text
 
 
 def test_a_package_that_another_hides(project: Path) -> None:

@@ -16,6 +16,7 @@ import pytest
 from graphflow.errors import GraphflowError, Place
 from graphflow.graph.plan import PlannedNode, Rule, Setting
 from graphflow.msgs.std_msgs.msg import String
+from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import core_of
 from graphflow.supervisor.processes import worker
 from graphflow.supervisor.processes.orphaned import Orphan
@@ -97,6 +98,24 @@ async def test_parameters_of_launch_files_that_a_node_does_not_have(graph: Graph
     assert isinstance(node, Talker)
     told = "graph.yaml:2:3: there is no parameter 'raet'; it is left out; did you mean 'rate'?"
     assert caplog.messages == [told]
+
+
+class Wheels(Node):
+    """Declares its parameters in a loop."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.radii = [self.declare_parameter(f"{side}.radius", 0.1) for side in ("left", "right")]
+
+
+async def test_optional_parameters_that_a_node_makes(graph: Graph, caplog: Any) -> None:
+    """They are set; one that is like none of them is left out."""
+    params = {name: Setting(0.2, PLACE, True, True) for name in ("left.radius", "left.radios")}
+    node = make_node(planned(f"{Wheels.__module__}:Wheels", params=params), PLACE.file)
+    assert node.parameters.get("left.radius") == 0.2
+    assert [text.partition(";")[0] for text in caplog.messages] == [
+        "graph.yaml:2:3: there is no parameter 'left.radios'"
+    ]
 
 
 @pytest.mark.parametrize(("level", "number"), [("debug", 10), ("error", 40), ("", 0)])
