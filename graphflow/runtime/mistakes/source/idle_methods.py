@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, nodes_in
@@ -12,7 +12,7 @@ from graphflow.errors import Place
 from graphflow.names import nearest
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
-from graphflow.runtime.mistakes.source.project_words import is_in_other_files, other_modules, words_in
+from graphflow.runtime.mistakes.source.project_words import is_in_other_files, methods_in, other_modules, prefixes_in
 from graphflow.runtime.mistakes.source.wrong_fields import message_of
 
 _LIKE_A_HANDLER = re.compile(r"on_|handle_|.*(callback|_cb|_handler)$|(tick|timer)$")
@@ -30,22 +30,23 @@ _DECORATORS = {
 
 
 def idle_methods(
-    cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str], space: dict[str, object]
+    cls: type, definition: ast.ClassDef, file: str, module: ast.Module, space: dict[str, object]
 ) -> Iterator[str]:
     """Return a sentence with its place for each such method.
 
     Args:
         file: The file of the class.
-        mentioned: The words that the file reads.
+        module: The syntax of the file.
         space: The global names of the file.
     """
+    mentioned, prefixes = methods_in(module), prefixes_in(module)
     for method in definition.body:
         if not isinstance(method, FunctionNode) or method.decorator_list or method.name in mentioned:
             continue
-        if method.name.startswith("__") or any(method.name in vars(parent) for parent in cls.__mro__[1:]):
+        if method.name.startswith(("__", *prefixes)) or any(method.name in vars(parent) for parent in cls.__mro__[1:]):
             continue  # the parent calls it
         way = _way(cls, method, space)
-        if not way or any(method.name in words_in(module) for module in other_modules(file, method.name)):
+        if not way or any(method.name in methods_in(other) for other in other_modules(file, method.name)):
             continue
         if not is_in_other_files(file, method.name):  # a test, or another program, may call it
             yield f"{Place(file, method.lineno)}: nothing calls {definition.name}.{method.name}{way}"

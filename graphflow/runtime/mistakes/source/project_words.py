@@ -12,7 +12,7 @@ from functools import cache
 from itertools import islice
 from pathlib import Path
 
-from graphflow.analysis.syntax import last_name, nodes_in, syntax_of
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_installed
 from graphflow.reading import found_text
 from graphflow.runtime.callables import file_of
@@ -42,10 +42,10 @@ def other_modules(file: str, word: str) -> Iterator[ast.Module]:
 
 
 def is_in_other_files(file: str, word: str) -> bool:
-    """Return whether another file of the project, loaded or not, has a word: its tests, or other programs."""
+    """Return whether another file of the project, loaded or not, has a word as an attribute or a string: as a test."""
     from graphflow.workspace.project import project_root
 
-    pattern = re.compile(rf"\b{word}\b")
+    pattern = re.compile(rf"(?:\.|[\"']){word}\b")
     return any(path != file and pattern.search(_source(path)) for path in _files(str(project_root(Path(file)))))
 
 
@@ -78,6 +78,23 @@ def _text(file: str) -> str:
 @cache
 def words_in(module: ast.Module) -> set[str]:
     """Return the attributes and names that a module reads, and its strings, but for texts that are only shown."""
+    return _attributes_in(module) | _names_in(module)
+
+
+@cache
+def methods_in(module: ast.Module) -> set[str]:
+    """Return the words by which a module may refer to methods: attributes, strings, and names in bodies of classes."""
+    bodies = [part for cls in nodes_in(module) if isinstance(cls, ast.ClassDef) for part in cls.body]
+    outside = [part for part in bodies if not isinstance(part, FunctionNode)]
+    return _attributes_in(module).union(*map(_names_in, outside))
+
+
+def _names_in(tree: ast.AST) -> set[str]:
+    return {node.id for node in nodes_in(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+
+
+@cache
+def _attributes_in(module: ast.Module) -> set[str]:
     found: set[str] = set()
     shown: set[ast.expr] = set()
     for node in nodes_in(module):
@@ -86,10 +103,19 @@ def words_in(module: ast.Module) -> set[str]:
                 shown.update(arguments)
             case ast.Constant() if node in shown:
                 continue
-            case (
-                ast.Attribute(attr=word, ctx=ast.Load())
-                | ast.Name(id=word, ctx=ast.Load())
-                | ast.Constant(value=str(word))
-            ):
+            case ast.Attribute(attr=word, ctx=ast.Load()) | ast.Constant(value=str(word)):
                 found.add(word)
     return found
+
+
+@cache
+def prefixes_in(module: ast.Module) -> tuple[str, ...]:
+    """Return the beginnings of the names that a module puts together for `getattr`, as in `f"on_{state}"`."""
+    found: list[str] = []
+    for node in nodes_in(module):
+        match node:
+            case ast.Call(func=ast.Name(id="getattr"), args=[_, ast.JoinedStr(values=[first, *_]), *_]):
+                found.append(first.value if isinstance(first, ast.Constant) and isinstance(first.value, str) else "")
+            case ast.Call(func=ast.Name(id="getattr"), args=[_, ast.BinOp(left=ast.Constant(value=str(first))), *_]):
+                found.append(first)
+    return tuple(found)

@@ -77,10 +77,10 @@ def _sources(cls: type) -> Iterator[tuple[type, ast.ClassDef, str]]:
 
 def _slips(cls: type) -> Iterator[str]:
     for parent, definition, file in _sources(cls):
-        mentioned = words_in(syntax_of(file).module)
+        module = syntax_of(file).module
         space = vars(sys.modules[parent.__module__])
-        yield from idle_methods(parent, definition, file, mentioned, space)
-        yield from stray_attributes(cls, definition, file, mentioned)
+        yield from idle_methods(parent, definition, file, module, space)
+        yield from stray_attributes(cls, definition, file, words_in(module))
         yield from _replaced(cls, definition, file, space)
         yield from _changed_in_place(cls, definition, file)
         flags, kept = flags_of(cls, definition), messages_kept(definition, space)

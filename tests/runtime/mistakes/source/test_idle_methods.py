@@ -11,7 +11,6 @@ import pytest
 
 from graphflow.analysis.syntax import syntax_of
 from graphflow.runtime.mistakes.source.idle_methods import idle_methods
-from graphflow.runtime.mistakes.source.project_words import words_in
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 
 HEAD = """\
@@ -45,8 +44,8 @@ def told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Told:
         spec.loader.exec_module(module)
         definition = definition_of(module.Robot)
         assert definition is not None
-        mentioned = words_in(syntax_of(str(file)).module)
-        return [text.partition(": ")[2] for text in idle_methods(module.Robot, *definition, mentioned, vars(module))]
+        syntax = syntax_of(str(file)).module
+        return [text.partition(": ")[2] for text in idle_methods(module.Robot, *definition, syntax, vars(module))]
 
     return found
 
@@ -66,6 +65,11 @@ def told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Told:
             "async def walk(self, goal: Fibonacci.Handle):\n    return Fibonacci.Result()",
             'nothing calls Robot.walk, which looks like a handler: declare it, as with @action(Type, "name") above it',
         ),
+        (
+            "async def number(self, number: Int32):\n    self.log.info('%s', number.data)",
+            "nothing calls Robot.number, which looks like a handler: "
+            'declare it, as with @subscription(Type, "topic") above it',
+        ),
     ],
 )
 def test_methods_that_are_meant_to_be_called(told: Told, body: str, text: str) -> None:
@@ -83,6 +87,10 @@ def test_methods_that_are_meant_to_be_called(told: Told, body: str, text: str) -
         "def drive(self):\n    return self.rate",
         "def handle_outlier(self, reason: str): ...",
         "def drive(self):\n    other.out.publish(Int32())",
+        "def drive(self):\n    self.out.publish(Int32())\nrun = drive",
+        "def go(self):\n    getattr(self, f'on_{self.rate}')()\ndef on_idle(self): ...",
+        "def go(self):\n    getattr(self, 'on_' + self.rate)()\ndef on_idle(self): ...",
+        "def go(self):\n    getattr(self, f'{self.rate}_callback')()\ndef a_callback(self): ...",
     ],
 )
 def test_methods_of_others(told: Told, body: str) -> None:
@@ -97,6 +105,13 @@ def test_a_method_that_an_installed_package_calls(told: Told, tmp_path: Path) ->
     installed.write_text("await robot.drive()\n")
     body = "async def drive(self):\n    self.out.publish(Int32())"
     assert len(told(body)) == 1
+
+
+@pytest.mark.parametrize("text", ["def drive(): ...", "drive = 1", "class Other:\n    async def drive(self): ..."])
+def test_another_file_with_the_name(told: Told, tmp_path: Path, text: str) -> None:
+    """It calls nothing by it."""
+    (tmp_path / "other.py").write_text(f"{text}\n")
+    assert len(told("async def drive(self):\n    self.out.publish(Int32())")) == 1
 
 
 def test_a_method_that_another_file_calls(told: Told, tmp_path: Path) -> None:
