@@ -36,6 +36,8 @@ TYPE_NAMES = {0: "not set", 1: "boolean", 2: "integer", 3: "double", 4: "string"
     9: "string array",
 }
 """ROS 2's names of the types."""
+_TRUTHS = {**dict.fromkeys(("yes", "on", "y"), "true"), **dict.fromkeys(("no", "off", "n"), "false")}
+"""Words for flags in YAML 1.1, which ROS 2 reads, and what to write for them."""
 _INT64 = range(-(2**63), 2**63)
 
 
@@ -94,6 +96,18 @@ class Parameter:
         type_of(value)
         return list(value) if isinstance(value, tuple) else value
 
+    def _correction(self, value: object) -> str:
+        """Return what to write in place of a value of another type; "" if it is not known."""
+        match value:
+            case str() if self.type == "bool" and value.lower() in _TRUTHS:
+                return f"write {_TRUTHS[value.lower()]}: {value} is a text in YAML 1.2"
+            case str() if plain(value) != value:
+                return f"write {plain(value)}"
+            case float() if self.type == "int" and isinstance(self.default, int):
+                where = f" in {self.place}" if self.place.file else ""
+                return f"its default is {self.default}, an integer: for a double, write {self.default}.0{where}"
+        return ""
+
     def _scalar(self, type_: ParamType, value: Any) -> Any:
         if type_ == "float" and isinstance(value, int) and not isinstance(value, bool):
             try:
@@ -110,7 +124,8 @@ class Parameter:
             fits = False
         if not fits:
             word = TYPE_NAMES[TYPE_IDS[self.type]]
-            hint = f"; write {plain(value)}" if isinstance(value, str) and plain(value) != value else ""
+            way = self._correction(value)
+            hint = f"; {way}" if way else ""
             raise ParameterError(f"parameter {self.name!r} is of type {word}, {value!r} is not{hint}")
         if type_ in ("int", "float"):
             self._check_range(value)

@@ -23,11 +23,8 @@ _VALUE = re.compile(r"\$\(var (\w+)\)")
 
 
 def value_correction(declared: Parameter, setting: Setting) -> str:
-    """Return the correction of a text, as a list, an expression, or without quotes, or of a fraction for an integer."""
+    """Return the correction of a text, as a list, an expression, or without quotes."""
     value = setting.value
-    if declared.type == "int" and isinstance(value, float) and isinstance(declared.default, int):
-        default = declared.default
-        return f"its default is {default}, an integer: for a double, write {default}.0 in {declared.place}"
     if not isinstance(value, str):
         return ""
     if found := _FOREIGN.fullmatch(value):

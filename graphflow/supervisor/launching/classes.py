@@ -124,7 +124,7 @@ def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
         parent, _, last = module.rpartition(".")
         beside = [m.name for m in iter_modules(getattr(sys.modules.get(parent), "__path__", []))]
         hint = _other_project(module, Path(root)) or did_you_mean(last, beside)
-        hint = hint or _above(module, Path(root)) or _bundled(wanted)
+        hint = hint or _above(module, Path(root)) or _in_source_folder(module, Path(root)) or _bundled(wanted)
         hint = hint or f"; modules are looked for in {root}"
     return f"cannot import {wanted}: there is no module {module!r}{hint}"
 
@@ -140,12 +140,23 @@ def _other_project(module: str, root: Path) -> str:
 
 
 def _above(module: str, root: Path) -> str:
-    """Suggest the folder above a project that has a missing module, which is its root if it has a pyproject.toml."""
+    """Suggest what makes a folder above, which has a missing module, the project's root."""
     top = module.partition(".")[0]
     for folder in list(root.parents)[:2]:
         if (folder / top).is_dir() or (folder / f"{top}.py").is_file():
             made = folder / "pyproject.toml"
-            return f"; modules are looked for in {root}; that of {folder} is found once there is a file {made}"
+            missing = f"the graph file is in {folder / 'graphs'}" if made.is_file() else f"there is a file {made}"
+            return f"; modules are looked for in {root}; that of {folder} is found once {missing}"
+    return ""
+
+
+def _in_source_folder(module: str, root: Path) -> str:
+    """Suggest to move a missing module out of a folder `src`."""
+    top = module.partition(".")[0]
+    for folder in (root, *list(root.parents)[:2]):
+        found = next((path for path in (folder / "src" / top, folder / "src" / f"{top}.py") if path.exists()), None)
+        if found is not None:
+            return f"; {found} is not found there: move it to {folder}, and the graph file to {folder / 'graphs'}"
     return ""
 
 

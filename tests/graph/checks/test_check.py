@@ -105,7 +105,15 @@ def test_what_fits_is_no_problem(line: str) -> None:
         ),
         ("params: {count: true}", "4:21: parameter 'count' is of type integer, True is not"),
         ("params: {name: 3}", "4:20: parameter 'name' is of type string, 3 is not"),
-        ("params: {turbo: on}", "4:21: parameter 'turbo' is of type boolean, 'on' is not"),
+        (
+            "params: {count: 0.5}",
+            "4:21: parameter 'count' is of type integer, 0.5 is not; "
+            "its default is 1, an integer: for a double, write 1.0 in code.py:1",
+        ),
+        (
+            "params: {turbo: on}",
+            "4:21: parameter 'turbo' is of type boolean, 'on' is not; write true: on is a text in YAML 1.2",
+        ),
         ("remap: {gaol: /x}", "4:13: Chaser has no topic or service 'gaol'; did you mean 'goal'?"),
         ("remap: {/goal: /x}", "4:13: Chaser has no topic or service '/goal'; did you mean 'goal'?"),
         ("concurrency: {m: [contrl]}", "4:23: Chaser has no handler 'contrl'; did you mean 'control'?"),

@@ -47,13 +47,6 @@ def test_expressions(tmp_path: Path, written: str, value: str, way: str) -> None
     assert correction(tmp_path, RATE, written, value) == way
 
 
-def test_a_fraction_for_an_integer(tmp_path: Path) -> None:
-    """The default has made it an integer."""
-    way = "its default is 1, an integer: for a double, write 1.0 in code.py:1"
-    assert correction(tmp_path, COUNT, "0.5", 0.5) == way
-    assert correction(tmp_path, COUNT, "true", True) == ""
-
-
 def test_expressions_of_other_files(tmp_path: Path) -> None:
     """No substitutions of that form are made in launch files and parameter files: the result is given."""
     assert correction(tmp_path, RATE, "1/2", "1/2", "a.launch.yaml") == "write rate: 0.5"

@@ -171,10 +171,23 @@ def test_a_file_that_is_run_apart_from_its_package(project: Path) -> None:
 
 def test_a_project_without_its_file(tmp_path: Path) -> None:
     """The folder with the module is named, and the file that makes it the project's root."""
-    for name in ("course", "graphs"):
+    for name in ("course", "graphs", "config"):
         (tmp_path / name).mkdir()
     text = _no_module("course.circle", "course.circle", "Circle", str(tmp_path / "graphs"))
     assert text.endswith(f"that of {tmp_path} is found once there is a file {tmp_path / 'pyproject.toml'}")
+    (tmp_path / "pyproject.toml").touch()
+    text = _no_module("course.circle", "course.circle", "Circle", str(tmp_path / "config"))
+    assert text.endswith(f"that of {tmp_path} is found once the graph file is in {tmp_path / 'graphs'}")
+
+
+@pytest.mark.parametrize("root", ["", "launch"])
+def test_a_module_in_a_source_folder(tmp_path: Path, root: str) -> None:
+    """It is to be moved beside the folder of the graph files, and is not taken for a node of graphflow."""
+    (tmp_path / "src" / "nodes").mkdir(parents=True)
+    (tmp_path / "launch").mkdir()
+    text = _no_module("nodes.talkers", "nodes.talkers", "Talker", str(tmp_path / root))
+    way = f"move it to {tmp_path}, and the graph file to {tmp_path / 'graphs'}"
+    assert text.endswith(f"; {tmp_path / 'src' / 'nodes'} is not found there: {way}")
 
 
 @pytest.mark.parametrize("root", ["", "other"])
