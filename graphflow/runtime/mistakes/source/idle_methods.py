@@ -8,11 +8,12 @@ from collections.abc import Iterator
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, nodes_in
+from graphflow.analysis.words import methods_in, prefixes_in
 from graphflow.errors import Place
 from graphflow.names import nearest
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
-from graphflow.runtime.mistakes.source.project_words import is_in_other_files, methods_in, other_modules, prefixes_in
+from graphflow.runtime.mistakes.source.project_words import is_in_other_files, other_modules
 from graphflow.runtime.mistakes.source.wrong_fields import message_of
 
 _LIKE_A_HANDLER = re.compile(r"on_|handle_|.*(callback|_cb|_handler)$|(tick|timer)$")

@@ -11,9 +11,10 @@ from collections.abc import Sequence
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import REPEATING, FunctionNode, syntax_of
 from graphflow.analysis.user_code import is_users_module, short_place
+from graphflow.analysis.words import words_in
 from graphflow.errors import Place
 from graphflow.runtime.declarations import declared
-from graphflow.runtime.mistakes.source.project_words import other_modules, words_in
+from graphflow.runtime.mistakes.source.project_words import other_modules
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 
 _BY_NAME = {"getattr", "vars", "__dict__", "exec", "eval", "attrgetter", "methodcaller"}

@@ -17,6 +17,7 @@ from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.mistakes import native_source
 from graphflow.analysis.syntax import FunctionNode, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users_module
+from graphflow.analysis.words import words_in
 from graphflow.errors import Place
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
@@ -25,7 +26,7 @@ from graphflow.runtime.mistakes.source.idle_methods import idle_methods
 from graphflow.runtime.mistakes.source.lost_updates import lost_updates
 from graphflow.runtime.mistakes.source.never_equal import never_equal
 from graphflow.runtime.mistakes.source.overridden import overridden
-from graphflow.runtime.mistakes.source.project_words import other_modules, words_in
+from graphflow.runtime.mistakes.source.project_words import other_modules
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 from graphflow.runtime.mistakes.source.stray_attributes import stray_attributes
 from graphflow.runtime.mistakes.source.uncancelled import uncancelled

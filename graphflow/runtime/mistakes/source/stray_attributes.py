@@ -7,10 +7,11 @@ from collections.abc import Collection, Iterator, Sequence
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import walk
+from graphflow.analysis.words import words_in
 from graphflow.errors import Place
 from graphflow.names import nearest
 from graphflow.runtime.declarations import declared
-from graphflow.runtime.mistakes.source.project_words import other_modules, words_in
+from graphflow.runtime.mistakes.source.project_words import other_modules
 
 
 def stray_attributes(cls: type, definition: ast.ClassDef, file: str, mentioned: Collection[str]) -> Iterator[str]:

@@ -11,15 +11,9 @@ from pathlib import Path
 import pytest
 
 from graphflow.runtime.mistakes.source import project_words
-from graphflow.runtime.mistakes.source.project_words import is_in_other_files, other_modules, words_in
+from graphflow.runtime.mistakes.source.project_words import is_in_other_files, other_modules
 
 NAME = "words_of_another_module"
-
-
-def test_words_are_what_is_read_and_not_what_is_shown() -> None:
-    """Attributes, names and strings; set attributes and the texts of logs are none."""
-    module = ast.parse("self.set = self.read\ncall(name, 'given')\nself.log.info('shown')\nprint('shown')")
-    assert words_in(module) == {"self", "read", "call", "name", "given", "log", "info", "print"}
 
 
 def _imported(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:

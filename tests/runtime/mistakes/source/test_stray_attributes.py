@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from graphflow import Node, Param
-from graphflow.runtime.mistakes.source.project_words import words_in
+from graphflow.analysis.words import words_in
 from graphflow.runtime.mistakes.source.stray_attributes import stray_attributes
 
 FILE = Path("/nowhere/robot.py")

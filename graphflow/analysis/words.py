@@ -1,0 +1,57 @@
+"""The words of a file's source: whether anything in it refers to a definition."""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
+
+_SHOWING = ("print", "debug", "info", "warning", "warn", "error", "exception", "critical", "fatal", "log")
+"""Functions whose texts name nothing: a handler often logs its own name."""
+
+
+@cache
+def words_in(module: ast.Module) -> set[str]:
+    """Return the attributes and names that a module reads, and its strings, but for texts that are only shown."""
+    return _attributes_in(module) | _names_in(module)
+
+
+@cache
+def methods_in(module: ast.Module) -> set[str]:
+    """Return the words by which a module may refer to methods: attributes, strings, and names in bodies of classes."""
+    bodies = [part for cls in nodes_in(module) if isinstance(cls, ast.ClassDef) for part in cls.body]
+    outside = [part for part in bodies if not isinstance(part, FunctionNode)]
+    return _attributes_in(module).union(*map(_names_in, outside))
+
+
+def _names_in(tree: ast.AST) -> set[str]:
+    return {node.id for node in nodes_in(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+
+
+@cache
+def _attributes_in(module: ast.Module) -> set[str]:
+    found: set[str] = set()
+    shown: set[ast.expr] = set()
+    for node in nodes_in(module):
+        match node:
+            case ast.Call(func=function, args=arguments) if last_name(function) in _SHOWING:
+                shown.update(arguments)
+            case ast.Constant() if node in shown:
+                continue
+            case ast.Attribute(attr=word, ctx=ast.Load()) | ast.Constant(value=str(word)):
+                found.add(word)
+    return found
+
+
+@cache
+def prefixes_in(module: ast.Module) -> tuple[str, ...]:
+    """Return the beginnings of the names that a module puts together for `getattr`, as in `f"on_{state}"`."""
+    found: list[str] = []
+    for node in nodes_in(module):
+        match node:
+            case ast.Call(func=ast.Name(id="getattr"), args=[_, ast.JoinedStr(values=[first, *_]), *_]):
+                found.append(first.value if isinstance(first, ast.Constant) and isinstance(first.value, str) else "")
+            case ast.Call(func=ast.Name(id="getattr"), args=[_, ast.BinOp(left=ast.Constant(value=str(first))), *_]):
+                found.append(first)
+    return tuple(found)
