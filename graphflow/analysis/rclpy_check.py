@@ -38,7 +38,6 @@ _OF_ONE_THREAD = {"SingleThreadedExecutor", "EventsExecutor", "ThreadPoolExecuto
 """Executors of rclpy with one thread, and classes of that ending that are not rclpy's."""
 _KINDS = {"create_timer": "timer", "create_subscription": "subscription", "create_service": "service"}
 _BRANCHES = (ast.If, ast.For, ast.While, ast.Try, ast.IfExp, ast.Match, ast.ExceptHandler)
-_LATER = "use call_async(request) and add_done_callback(...)"
 _OWN = "callback_group=MutuallyExclusiveCallbackGroup()"
 _POOL = "spin with MultiThreadedExecutor()"
 
@@ -140,7 +139,7 @@ class _Class:
                     yield Finding(_grade(wait), Place(self.file, wait.line), text)
         for wait in self._waits("__init__", True, set()):
             if wait.holds_thread and not wait.spins:
-                way = _LATER if wait.client else "go on in the callback that it waits for, or in a timer"
+                way = _later(wait) if wait.client else "go on in the callback that it waits for, or in a timer"
                 text = f"__init__ waits in {wait.what}, and nobody spins the node before it is made: {way}"
                 yield Finding(_grade(wait), Place(self.file, wait.line), text)
 
@@ -171,13 +170,15 @@ class _Class:
             f"{callback} waits in {wait.what}, and {setters or 'only its next run'}, which set{one} {what}, need{one}"
         )
         is_kept_out = setting == {other.method for other in by} and all(other.group == group for other in by)
-        later = f"return instead of waiting, and go on in {setters}" if others else "return instead of waiting"
+        later = f"return instead of waiting, and go on in {setters or 'its next call'}"
         if is_kept_out and group is not None and group.is_exclusive:
             text = f"{needs} {group}, which {callback.method} holds until it returns: {later}"
         elif self.is_single and not wait.spins:
             text = f"{needs} a thread that spins, and the only one is in {callback.method}: {later}"
         else:
             return ""
+        if not others:  # each further run would wait as well
+            return text
         return f"{text}; or make {callback.method} with {_OWN}{'' if wait.spins else f', and {_POOL}'}"
 
     def _fault(self, callback: _Callback, wait: _Wait) -> str:
@@ -196,10 +197,10 @@ class _Class:
             apart = f"make {callback.method} with {_OWN}"
             if not wait.holds_thread:
                 return f"{needs}: {apart}"
-            return f"{needs}: {_LATER}; or {apart}{'' if wait.spins else f', and {_POOL}'}"
+            return f"{needs}: {_later(wait)}; or {apart}{'' if wait.spins else f', and {_POOL}'}"
         if self.is_single and wait.holds_thread and not wait.spins:
             needs = f"{who}, which needs a thread that spins, and the only one is in {callback.method}"
-            return f"{needs}: {_LATER if wait.client else 'let a timer call back at that rate'}; or {_POOL}"
+            return f"{needs}: {_later(wait) if wait.client else 'let a timer call back at that rate'}; or {_POOL}"
         return ""
 
     def _waits(self, method: str, is_certain: bool, seen: set[str]) -> Iterator[_Wait]:
@@ -256,6 +257,12 @@ class _Class:
         )
         if poll is not None and not (self.is_single and is_of_rate):  # the wait for the rate is a finding of its own
             yield _Wait(poll.text, loop.lineno, "", True, spins, False, poll)
+
+
+def _later(wait: _Wait) -> str:
+    """Return the call that does not block, in place of one that does."""
+    call = "send_goal_async(goal)" if wait.what.endswith(".send_goal") else "call_async(request)"
+    return f"use {call} and add_done_callback(...)"
 
 
 def _grade(wait: _Wait) -> Grade:

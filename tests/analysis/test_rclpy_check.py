@@ -131,6 +131,30 @@ def test_an_answer_that_the_node_itself_would_give(
     [way] = findings_in(tmp_path / "asker.py")
     assert f"whose {needs}" in str(way)
     assert change in str(way)
+    later = "send_goal_async(goal)" if "send_goal" in settings["tick"] else "call_async(request)"
+    assert f"use {later} and add_done_callback(...)" in str(way) or "await" in settings["tick"]
+
+
+ITSELF = """\
+class Square(Node):
+    def __init__(self):
+        super().__init__('square')
+        self.create_subscription(Pose, 'pose', self.on_pose, 10)
+    def on_pose(self, msg):
+        self.pose = msg
+        while self.pose.x < 8.0:
+            time.sleep(0.1)
+rclpy.spin(Square())
+"""
+
+
+def test_a_callback_that_waits_for_its_next_call(tmp_path: Path) -> None:
+    """No group and no thread ends that: the next call would wait as well."""
+    (tmp_path / "square.py").write_text(ITSELF)
+    [way] = findings_in(tmp_path / "square.py")
+    assert str(way).endswith(
+        "which on_pose holds until it returns: return instead of waiting, and go on in its next call"
+    )
 
 
 def test_a_coroutine_gives_back_its_thread_and_keeps_its_group(tmp_path: Path) -> None:

@@ -384,6 +384,30 @@ class FixedPollsAFlag(PollsAFlag):
     group = MutuallyExclusiveCallbackGroup
 
 
+class WaitsForItsNextCall(Waits):
+    threads = 2
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.newest = String()
+        self.pub = self.create_publisher(String, "news", 10)
+
+    def arrive(self) -> None:
+        self.other.cancel()
+        self.pub.publish(String(data="begin"))
+
+    def on_news(self, message: Any) -> None:
+        self.newest = message
+        while self.newest.data != "end":
+            time.sleep(0.02)  # stuck: WaitsForItsNextCall
+        self.done.set()
+
+
+class FixedWaitsForItsNextCall(WaitsForItsNextCall):
+    def on_news(self, message: Any) -> None:
+        self.done.set()
+
+
 class PollsAtARate(PollsAFlag):
     """The rate ticks, and what it waits for never comes."""
 
@@ -904,6 +928,7 @@ PLANTED: list[tuple[type[Any], type[Any], str]] = [
     (PollsTheResult, FixedPollsTheResult, OWN),
     (WaitsForALambda, FixedWaitsForALambda, OWN),
     (PollsAtARate, FixedPollsAtARate, "make fire of /waiter with callback_group=MutuallyExclusiveCallbackGroup()"),
+    (WaitsForItsNextCall, FixedWaitsForItsNextCall, "This ends it: return from on_news instead of waiting for"),
     (SleepsByHand, FixedSleepsByHand, "wake, which sets it, is kept out"),
     (PollsANavigator, FixedPollsANavigator, "what follows the answer of /count, which sets it, is kept out"),
     (

@@ -60,6 +60,8 @@ def in_rclpys_words(holding: Sequence[Member], alone: Sequence[Member], graph: W
         reply = _reply_queue(graph.activities[way.edge.to], way.wait, graph)
         if reply is not None and _is_spun_inside(graph.activities[way.edge.to], reply, graph):
             return  # spinning inside takes the node from its executor for good: nothing else helps
+        if _waits_for_itself(graph.activities[way.edge.to], way.wait, graph):
+            return  # each further run would wait as well, and take one more thread
     apart = _apart(chosen, graph)
     if apart:
         yield _text(*apart)
@@ -156,12 +158,19 @@ def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> list
             return [f"look it up without a timeout in {place},", f"and again when {handler} is called next"]
         case SetBy(what=what, is_held=False, queues=queues):
             others = " or ".join(_handlers([name for name in queues if name != _own(holder, graph)], graph))
-            others = others or "the callback that sets it"
+            others = others or (
+                "its next call" if _waits_for_itself(holder, edge, graph) else "the callback that sets it"
+            )
             if answers:
                 future = f"and await a rclpy.task.Future that {others} sets"
                 return [f"do not block in {place}:", f"make {handler} async def with {_EXCLUSIVE},", future]
             return [f"return from {handler} instead of waiting for {what} in {place},", f"and go on in {others}"]
     return []
+
+
+def _waits_for_itself(holder: ActivityView, wait: Edge, graph: WaitGraph) -> bool:
+    """Whether a callback waits for what only its own next run would set."""
+    return isinstance(wait.via, SetBy) and {*wait.via.queues} == {_own(holder, graph)}
 
 
 def _own(holder: ActivityView, graph: WaitGraph) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 import rclpy
@@ -71,6 +72,8 @@ class Program:
             self.node.flag = True
         if isinstance(getattr(self.node, "rate", None), planted.HandMadeRate):
             self.node.rate.fired = True
+        if hasattr(self.node, "newest"):
+            self.node.newest = String(data="end")
         if hasattr(self.node, "navigator"):
             self.node.navigator.result = "no more"
         if hasattr(self.node, "store") and self.node.store.lock.locked():
