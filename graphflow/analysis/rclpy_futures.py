@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Container, Iterator
 
 from graphflow.analysis.syntax import is_nested, last_name, nodes_in, walk
@@ -15,6 +16,11 @@ _LOOKS = ("spin_until_future_complete", "spin_once_until_future_complete", "prin
 """Functions that read a future, and do not end it."""
 
 
+_ASKING = ("call_async", "send_goal_async")
+_WAITING = re.compile(r"spin|done|wait|sleep|join|event")
+"""Words in the names of functions after which a future may have its result."""
+
+
 def futures_of(function: ast.AST, clients: Container[str]) -> dict[str, str]:
     """Return the names of futures that a function gets from clients, each with the client."""
     found = {}
@@ -23,7 +29,7 @@ def futures_of(function: ast.AST, clients: Container[str]) -> dict[str, str]:
             case ast.Assign(
                 targets=[target],
                 value=ast.Call(func=ast.Attribute(value=ast.Attribute(value=ast.Name("self"), attr=name), attr=verb)),
-            ) if name in clients and verb in ("call_async", "send_goal_async"):
+            ) if name in clients and verb in _ASKING:
                 if not _is_known_elsewhere(dotted(target), function):
                     found[dotted(target)] = name
     return found
@@ -70,10 +76,32 @@ def early_questions(module: ast.AST) -> Iterator[tuple[int, str]]:
                 case (
                     ast.Assign(targets=[target], value=ast.Call(func=ast.Attribute(attr=verb))),
                     ast.If(test=ast.Call(func=ast.Attribute(value=asked, attr="done"))),
-                ) if verb in ("call_async", "send_goal_async") and dotted(target) and dotted(target) == dotted(asked):
+                ) if verb in _ASKING and dotted(target) and dotted(target) == dotted(asked):
                     name = dotted(target)
                     text = f"{name} cannot be done yet, since nothing spins between the two lines"
                     yield (
                         second.lineno,
                         f"{text}; write {name}.add_done_callback(...), or await it in an async callback",
                     )
+
+
+def early_results(module: ast.AST) -> Iterator[tuple[int, str]]:
+    """Find lines that return the result of a future which nothing in their function waits for."""
+    for function in nodes_in(module):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        made: dict[str, int] = {}
+        asked: list[tuple[int, str]] = []
+        is_open = True
+        for node in nodes_in(function):
+            match node:
+                case ast.Assign(targets=[target], value=ast.Call(func=ast.Attribute(attr=verb))) if verb in _ASKING:
+                    made[dotted(target)] = node.lineno
+                case ast.Return(value=ast.Call(func=ast.Attribute(value=owner, attr="result"))):
+                    asked.append((node.lineno, dotted(owner)))
+                case ast.Attribute(attr=name) | ast.Name(id=name):
+                    is_open = is_open and not _WAITING.search(name)
+        for line, future in asked if is_open else ():
+            if future in made:
+                text = f"{future}.result() is None there, since nothing spins after line {made[future]}"
+                yield line, f"{text}; write before it: rclpy.spin_until_future_complete(node, {future})"

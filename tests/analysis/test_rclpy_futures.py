@@ -6,7 +6,7 @@ import ast
 
 import pytest
 
-from graphflow.analysis.rclpy_futures import dotted, futures_of, polled_futures
+from graphflow.analysis.rclpy_futures import dotted, early_results, futures_of, polled_futures
 
 CALL = "future = self.client.call_async(request)\n"
 
@@ -48,3 +48,34 @@ def test_loops_that_ask_for_an_end() -> None:
     test = ast.parse("rclpy.ok() and not self.future.done() and other.done()", mode="eval").body
     assert [dotted(owner) for owner in polled_futures(test)] == ["self.future"]
     assert dotted(ast.parse("f()", mode="eval").body) == ""
+
+
+SENDS = """\
+def send(self, request):
+    future = self.client.call_async(request)
+    {}
+    return future.result()
+"""
+
+
+def test_a_result_that_is_returned_at_once() -> None:
+    """It is None; the line is told with what to write before it."""
+    text = "future.result() is None there, since nothing spins after line 2"
+    way = "write before it: rclpy.spin_until_future_complete(node, future)"
+    assert list(early_results(ast.parse(SENDS.format("print('sent')")))) == [(4, f"{text}; {way}")]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "rclpy.spin_until_future_complete(self, future)",
+        "while not future.done(): self.executor.spin_once()",
+        "self.came.wait()",
+        "time.sleep(1.0)",
+        "future = self.other()",
+    ],
+)
+def test_a_result_that_may_be_there(line: str) -> None:
+    """Something spins, or other code may do so meanwhile."""
+    text = SENDS.format(line).replace("client.call_async", "client.call_async" if "other" not in line else "call")
+    assert list(early_results(ast.parse(text))) == []

@@ -26,7 +26,8 @@ from graphflow.analysis.mistakes.checks import IN_CODE, IN_FILES, Found
 from graphflow.analysis.mistakes.values.message_values import message_values, subscribed
 from graphflow.analysis.mistakes.values.names_in_pairs import names_in_pairs
 from graphflow.analysis.mistakes.values.old_parameters import old_parameters
-from graphflow.analysis.rclpy_futures import early_questions
+from graphflow.analysis.mistakes.values.two_names import two_names
+from graphflow.analysis.rclpy_futures import early_questions, early_results
 from graphflow.analysis.uncalled import misspelt_main
 
 _IN_PROGRAMS: Final[tuple[Callable[[ast.Module], Found], ...]] = (
@@ -44,6 +45,8 @@ _IN_PROGRAMS: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     lifecycle_hooks,
     unused_publishers,
     forgotten_callbacks,
+    two_names,
+    early_results,
 )
 """Checks of programs for rclpy alone."""
 
