@@ -314,11 +314,17 @@ def _without_servers(cache: GraphCache) -> Iterator[tuple[str, bool]]:
 
 
 def _nearest(cache: GraphCache, name: str, here: Kind, there: Kind) -> str:
-    """Suggest names instead of one that no node offers: the most similar, or else those of its type."""
-    type_ = {e.type for e in cache.endpoints(here, name)}
-    same = sorted({e.name for e in cache.endpoints(there) if e.type in type_ and not is_hidden(e.name)} - {*EVERYBODYS})
+    """Suggest names instead of one that no node offers: the most similar, or else those of its type.
+
+    Topics of the node itself are none, and those of a type of std_msgs may be about anything.
+    """
+    users = list(cache.endpoints(here, name))
+    types, nodes = {e.type for e in users}, {e.node_name for e in users if here is Kind.SUBSCRIPTION}
+    offered = [e for e in cache.endpoints(there) if e.type in types and e.node_name not in nodes]
+    same = sorted({e.name for e in offered if not is_hidden(e.name)} - {*EVERYBODYS})
     like = nearest(name, same)
-    of_its_type = [like] if like else same[:SHOWN]
+    is_vague = any(type_.startswith("std_msgs/") for type_ in types)
+    of_its_type = [like] if like else [] if is_vague else same[:SHOWN]
     return f"; available with that type: {', '.join(of_its_type)}" if of_its_type else ""
 
 

@@ -198,6 +198,9 @@ def test_where_nobody_speaks() -> None:
         entity_token("/goto", kind=CLIENT, name="/rotat/_action/send_goal"),
         entity_token("/sim", kind=SERVICE, name="/rotate/_action/send_goal"),
         entity_token("/goto", kind=CLIENT, name="/cook/_action/send_goal"),
+        entity_token("/mux", kind=SUB, name="/nav", type_="geometry_msgs/msg/Twist"),
+        entity_token("/mux", kind=PUB, name="/out", type_="geometry_msgs/msg/Twist"),
+        entity_token("/key", kind=PUB, name="/stick", type_="geometry_msgs/msg/Twist"),
     )
     told = found(seen, [], [])
     assert told.faults == [
@@ -206,8 +209,9 @@ def test_where_nobody_speaks() -> None:
         "/goto sends goals to /rotat, which no node offers; did you mean /rotate?",
     ]
     assert told.hints == [
+        "/mux subscribes to /nav, which no node publishes; available with that type: /stick",
         "/too and /two subscribe to /scan2, which no node publishes; available with that type: /scan1",
-        "/sim subscribes to /turtle1/cmd_vel, which no node publishes; available with that type: /turtle1/pose",
+        "/sim subscribes to /turtle1/cmd_vel, which no node publishes",
         "/goto sends goals to /cook, which no node offers",
     ]
 

@@ -100,9 +100,10 @@ def _check_installation(*, report: bool, as_json: bool) -> bool:
 
 def _here() -> tuple[Findings, Findings]:
     """Check this machine without the graph; return faults and notes."""
-    faults = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_left_over())}
+    faults = {"installation": list(installation.faults(_environment(), _version)), "runs": list(_unguarded())}
     notes = {
         "rclpy": list(_whose_rclpy()),
+        "left": list(_left_over()),
         "starts": list(installation.recompiled(installation, writes=not sys.dont_write_bytecode)),
     }
     return faults, notes
@@ -219,13 +220,18 @@ def _whose_rclpy() -> Iterator[str]:
 
 
 def _left_over() -> Iterator[str]:
-    from graphflow.supervisor.rundir import left_over, running
+    from graphflow.supervisor.rundir import left_over
 
     for folder, run in left_over():
         yield (
             f"graph {run.graph} (domain {run.domain}) was killed and left {folder}: start it again, "
             "which cleans up, or delete that folder"
         )
+
+
+def _unguarded() -> Iterator[str]:
+    from graphflow.supervisor.rundir import running
+
     for run in running():
         if run.unguarded:
             yield f"graph {run.graph} (domain {run.domain}): {run.guard_again}"

@@ -46,6 +46,7 @@ def test_endpoints_that_do_not_fit(standing: Machine) -> None:
         "health",
         "installation",
         "runs",
+        "left",
         "unreadable",
         "kept_back",
     )
