@@ -21,8 +21,8 @@ from graphflow.wire.process import ProcessToken
 
 FLOOD = 50.0
 """Log lines per second from which a flood is reported."""
-ECHO = 1.0
-"""Own messages per second received by a node from which an echo is reported."""
+ECHO, ECHO_LEAST = 1.0, 3
+"""Own messages that a node receives, per second and in all, from which an echo is reported."""
 LOST_PART, LOST_LEAST, EXPIRED_LEAST = 0.5, 20, 5
 """Share and number of dropped messages from which a loss is reported."""
 MISSED_LEAST = 3
@@ -131,7 +131,7 @@ def _echoes(cache: GraphCache, then: Counts, now: Counts, seconds: float) -> Ite
     for entity in _own_topics(cache):
         rate = _rate(then, now, (entity.node_name, f"subscription {entity.name}"), ("received",), seconds)
         published = _rate(then, now, (entity.node_name, f"publisher {entity.name}"), ("published",), seconds)
-        if min(rate, published) >= ECHO:
+        if min(rate, published) >= max(ECHO, ECHO_LEAST / seconds):
             yield (
                 f"{entity.node_name} receives its own messages on {entity.name}, {rate:.0f} per second: remap "
                 "one of the two, or ignore them: a native node with ignore_local=True, one of rclpy in its callback"

@@ -69,7 +69,7 @@ def test_two_nodes_that_offer_a_service() -> None:
     ]
 
 
-@pytest.mark.parametrize(("rate", "is_told"), [(100, True), (1, False)])
+@pytest.mark.parametrize(("rate", "is_told"), [(100, True), (2, False), (1, False)])
 def test_a_node_that_hears_itself(rate: int, is_told: bool) -> None:
     """A node's own messages are reported if they really arrive; topics of every node do not count."""
     seen = Seen(*(entity_token("/a", kind=kind, name=name) for kind in (PUB, SUB) for name in ("/loop", "/tf")))
