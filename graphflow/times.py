@@ -163,7 +163,7 @@ FROM_SECONDS: Mapping[str, str] = {
     "Duration": "Duration.of(seconds)",
     "Time": "self.clock.now(), or Time(round(seconds * 1e9))",
 }
-"""How a duration and a time are made from seconds."""
+"""Expressions that make a duration and a time from seconds."""
 
 
 def _refuse_fraction(name: str, value: object) -> None:

@@ -202,12 +202,13 @@ def _is_of_a_line(error: BaseException) -> bool:
 async def _report_unmet(item: pytest.Function, graph: Graph) -> None:
     """Add the unmet waits to the report of a failing test."""
     from graphflow.testing.forgotten import forgotten
-    from graphflow.testing.unmet import unmet
+    from graphflow.testing.unmet import arrivals, unmet
 
+    before = arrivals(graph)
     await asyncio.sleep(0)  # lets new tasks start
     found = forgotten()
     try:
-        found += await unmet(graph)
+        found += await unmet(graph, before)
     except RuntimeError as error:  # the graph does not settle
         found.append(str(error))
     if found:

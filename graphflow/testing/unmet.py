@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 import asyncio
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from graphflow.analysis.frames import awaited, code_of
@@ -14,6 +14,7 @@ from graphflow.errors import Place
 from graphflow.executor import clock as executor_clock
 from graphflow.machines.near_topics import is_misspelt
 from graphflow.names import did_you_mean, is_hidden
+from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.endpoints.timer import Timer
 from graphflow.runtime.mistakes.source.shadowing import definition_of
 from graphflow.runtime.node_core import NodeCore, core_of
@@ -28,21 +29,46 @@ _REAL_TIMES = ("time.time", "time.monotonic", "time.perf_counter", "datetime.now
 """Calls that read a clock which no test moves."""
 
 
-async def unmet(graph: Graph) -> list[str]:
-    """Return a sentence for each unmet wait. Call it after the failure: messages in transit arrive meanwhile."""
+def arrivals(graph: Graph) -> dict[tuple[str, str], int]:
+    """Return the numbers of messages that have been taken so far: by taps, and by handlers with their nodes."""
+    found = {(topic, ""): len(tap) for topic, tap in graph.taps}
+    for node in graph.nodes:
+        if node is not graph.tester and node.is_running:
+            counts = [(end.name, end.statistics()) for end in node.endpoints if isinstance(end, TopicSubscription)]
+            found |= {(name, node.full_name): number["received"] - number["waiting"] for name, number in counts}
+    return found
+
+
+def _afterwards(
+    before: Mapping[tuple[str, str], int], now: Mapping[tuple[str, str], int]
+) -> tuple[list[str], list[str]]:
+    """Return a sentence for each tap, and for each handler, that has taken messages after the test."""
+    found: tuple[list[str], list[str]] = [], []
+    for (topic, node), number in now.items():
+        if late := number - before.get((topic, node), number):
+            came = f"{_messages(late)} of {topic} arrived{f' at {node}' if node else ''} after the test had ended"
+            found[bool(node)].append(f"{came}: await graph.settle() before inspecting {'it' if node else 'them'}")
+    return found
+
+
+async def unmet(graph: Graph, before: Mapping[tuple[str, str], int] | None = None) -> list[str]:
+    """Return a sentence for each unmet wait. Call it after the failure: messages in transit arrive meanwhile.
+
+    Args:
+        before: The arrivals as the test failed; those of now if None.
+    """
     cores = [core_of(node) for node in graph.nodes if node is not graph.tester and node.is_running]
-    before = [len(tap) for _, tap in graph.taps]
+    before = arrivals(graph) if before is None else before
     has_stood_still = not graph.clock.monotonic_ns() and any(map(_waits_for_time, cores))
     found = [*_sleepers(cores), *unserved(graph)]
     await graph.settle()
-    for (topic, tap), count in zip(graph.taps, before, strict=False):
-        if len(tap) > count:
-            came = f"{_messages(len(tap) - count)} of {topic}"
-            found.append(f"{came} arrived after the test had ended: await graph.settle() before inspecting them")
+    at_taps, at_nodes = _afterwards(before, arrivals(graph))
+    found += at_taps
     found += _late(graph)
     found += _strangers(graph, cores)
     if has_stood_still:
         found.append("the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)")
+    found += at_nodes if not found else []
     if not found and any(not tap for _, tap in graph.taps):
         found += _unfed(graph, cores)
     return found or [*_real_times(cores)]

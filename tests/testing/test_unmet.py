@@ -14,7 +14,7 @@ from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
-from graphflow.testing.unmet import misspelt_taps, unmet, unserved
+from graphflow.testing.unmet import arrivals, misspelt_taps, unmet, unserved
 
 
 class Talker(Node):
@@ -42,6 +42,18 @@ async def test_messages_on_their_way(graph: Graph) -> None:
         "1 message of /out arrived after the test had ended: await graph.settle() before inspecting them"
     ]
     assert len(heard) == 1
+    assert await unmet(graph) == []
+
+
+async def test_messages_that_no_tap_takes(graph: Graph) -> None:
+    """The node that handles them is named, with those that came as the failing test gave others a turn."""
+    await graph.start(Echo())
+    graph.publisher(String, "/words").publish(String(data="a"))
+    before = arrivals(graph)
+    await graph.settle()
+    assert await unmet(graph, before) == [
+        "1 message of /words arrived at /echo after the test had ended: await graph.settle() before inspecting it"
+    ]
     assert await unmet(graph) == []
 
 
