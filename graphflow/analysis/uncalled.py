@@ -16,6 +16,8 @@ _METHODS = (
     *("set", "clear", "acquire", "release", "notify", "notify_all", "start", "join", "wait", "popleft", "task_done"),
 )
 """Methods of nodes, of their parts, and of events, locks, threads and queues that are called without arguments."""
+_SPINS = ("rclpy.spin", "rclpy.spin_once")
+"""Functions that take a node."""
 _ALSO_VALUES = ("start", "stop")
 """Methods whose names slices and ranges have for values, which a script may look at."""
 _HANDLERS = {"subscription", "service", "timer", "action", "task"}
@@ -72,6 +74,7 @@ def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
             case ast.Expr(value=ast.Attribute(attr=name) as method):
                 function = _method(method, parents)
                 is_known = name in _METHODS and not (is_own(method) and name in own)
+                is_known |= ast.unparse(method) == "rclpy.init"
                 is_known &= name not in _ALSO_VALUES or any(isinstance(parent, FunctionNode) for parent in parents)
                 if (is_known or function is not None) and not _is_tried(parents):
                     shown = ast.unparse(method)
@@ -95,8 +98,9 @@ def _method(named: ast.Attribute, parents: Sequence[ast.AST]) -> FunctionNode | 
 
 def _call(method: ast.Attribute, function: FunctionNode | None) -> str:
     """Return the call that was meant, with the names of its arguments."""
-    arguments = function.args.args[1:] if function is not None else []
-    call = f"{ast.unparse(method)}({', '.join(argument.arg for argument in arguments)})"
+    arguments = [argument.arg for argument in function.args.args[1:]] if function is not None else []
+    shown = ast.unparse(method)
+    call = f"{shown}({', '.join(arguments)})" if shown not in _SPINS else f"{shown}(node)"
     return f"write: await {call}" if isinstance(function, ast.AsyncFunctionDef) else f"write: {call}"
 
 

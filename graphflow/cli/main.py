@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
+from pathlib import Path
 from typing import NoReturn
 
 import click
@@ -82,6 +83,15 @@ _OTHER_WORDS = {"kill": "stop", "interfaces": "interface"}
 """Verbs of other tools, and ours of the same meaning."""
 
 
+def _runs(words: Sequence[str]) -> bool:
+    """Whether words are a package with an executable: `run` is forgotten."""
+    from graphflow.workspace.executables import EXECUTABLES
+    from graphflow.workspace.packages import find_workspace
+
+    package = find_workspace(Path.cwd()).packages.get(words[0]) if len(words) > 1 else None
+    return tuple(words[:2]) in EXECUTABLES or (package is not None and words[1] in package.executables)
+
+
 class _Verbs(Verbs):
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_VERBS)
@@ -101,7 +111,7 @@ class _Verbs(Verbs):
         group = self.get_command(ctx, rest[0]) if rest else None
         if isinstance(group, click.Group) and group.get_command(ctx, word) is not None:
             return f"no such command {word!r}; did you mean: graphflow {' '.join([rest[0], word, *rest[1:]])}"
-        return ""
+        return f"no such command {word!r}; did you mean: graphflow run {' '.join(words)}" if _runs(words) else ""
 
     def unknown(self, ctx: click.Context, word: str) -> str:
         meant = (

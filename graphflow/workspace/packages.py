@@ -163,11 +163,17 @@ class Package:
 
     @property
     def _no_setup(self) -> list[str]:
-        """The fault of a package with modules but no file that declares executables; or empty."""
-        has_modules = {file.name for file in (self.folder / self.name).glob("*.py")} - {"__init__.py"}
-        if not has_modules or self.entry_points or any((self.folder / name).is_file() for name in _SETUPS):
+        """The fault of a package with modules of which no file makes executables; or empty."""
+        modules = sorted(file for file in (self.folder / self.name).glob("*.py") if file.name != "__init__.py")
+        if not modules or self.entry_points:
             return []
-        return [f"{self.folder} has no setup.py, whose console_scripts name the executables"]
+        if not any((self.folder / name).is_file() for name in _SETUPS):
+            return [f"{self.folder} has no setup.py, whose console_scripts name the executables"]
+        program = next((file.stem for file in modules if re.search(r"^def main\(", _text(file), re.MULTILINE)), None)
+        if program is None or self.setup.faults or self.setup.computes_scripts or not self.setup.file.is_file():
+            return []
+        line = f"{program} = {self.name}.{program}:main"
+        return [f"{self.setup.file} names no executable: add '{line}' to its console_scripts"]
 
     def fault_of(self, executable: str) -> str | None:
         """Return the fault of an executable: its module or function does not exist; None for none."""

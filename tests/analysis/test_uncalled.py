@@ -89,6 +89,15 @@ def test_methods_without_parentheses() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("line", "call"), [("rclpy.init", "rclpy.init()"), ("rclpy.spin", "rclpy.spin(node)"), ("self.init", "")]
+)
+def test_functions_of_rclpy_without_parentheses(line: str, call: str) -> None:
+    """They come with the argument that they need."""
+    told = f"{line} without parentheses calls nothing; write: {call}"
+    assert [text for _, text in uncalled_methods(ast.parse(f"def main():\n    {line}\n"))] == ([told] if call else [])
+
+
 EVENTS = """
 class Robot(Node):
     @subscription(Pose, "pose")

@@ -352,6 +352,20 @@ def test_a_package_without_setup_py(tmp_path: Path) -> None:
     assert find_workspace(tmp_path / "ws").packages["lamp"].faults == []
 
 
+def test_a_package_whose_setup_py_names_no_executable(tmp_path: Path) -> None:
+    """The line to add is told, if a module has a main()."""
+    folder = package(
+        tmp_path / "ws/src/lamp",
+        "lamp",
+        lamp__node_dot_py="def main(): ...\n",
+        setup_dot_py="setup(name='lamp', entry_points={'console_scripts': []})",
+    )
+    line = f"{folder / 'setup.py'} names no executable: add 'node = lamp.node:main' to its console_scripts"
+    assert find_workspace(tmp_path / "ws").packages["lamp"].why_no_executable == f"; {line}"
+    (folder / "lamp" / "node.py").write_text("class Lamp: ...\n")
+    assert find_workspace(tmp_path / "ws").packages["lamp"].why_no_executable == ""
+
+
 @pytest.mark.parametrize(
     ("entry", "told"),
     [

@@ -249,7 +249,10 @@ def check_hook(hook: object, word: str, argument: str, what: str, place: Place) 
 def check_group(group: object, kind: type | tuple[type, ...], what: str, place: Place) -> None:
     """Check that `group` is a declared group."""
     if group is not None and not isinstance(group, kind):
-        raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; declare one: io = Group(1)")
+        way = "declare one: io = Group(1)"
+        if isinstance(group, str) and group.isidentifier():
+            way = f"write group={group}, without quotes, below {group} = Group(1)"
+        raise DeclarationError(f"{place}: {what}: group= takes a Group, not {group!r}; {way}")
 
 
 def check_on_error(on_error: object, place: Place) -> None:

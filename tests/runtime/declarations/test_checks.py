@@ -90,7 +90,7 @@ WRONG: list[tuple[Any, str]] = [
     (lambda: checks.check_on_event("heard", "X", HERE), "X: on_event= takes a method defined above it"),
     (
         lambda: checks.check_group("io", Group, "X", HERE),
-        "X: group= takes a Group, not 'io'; declare one",
+        "X: group= takes a Group, not 'io'; write group=io, without quotes, below io = Group(1)",
     ),
     (lambda: checks.check_on_error("ignore", HERE), "on_error must be one of budget, log, end, not 'ignore'"),
 ]

@@ -56,14 +56,16 @@ def _of_period(call: ast.Call, bindings: Bindings, parents: Sequence[ast.AST]) -
         ms = numbers.pop()
         if ms is not None and not numbers:
             shown = f"{ast.unparse(value)} is {ms}, and " if bound else ""
-            text = f"{shown}a period is in seconds: the first call comes after {ms} s; for {ms} ms write {ms / 1000:g}"
+            text = f"{shown}a period is in seconds: the first call comes after {ms} s"
+            text += f"; if {ms} ms are meant, write {ms / 1000:g}"
             yield value.lineno, text
         rates = {_hertz(found) for found in bound or [value]}
         rate = rates.pop()
         if rate is not None and not rates and _commands(_callback(call, parents)):
             shown = f"{ast.unparse(value)} is {rate}, and " if bound else ""
             way = f"@timer(hz={rate})" if name == "timer" else f"create_timer(1 / {rate}, ...)"
-            text = f"{shown}a period is in seconds: a command comes every {rate} s; for {rate} per second write {way}"
+            text = f"{shown}a period is in seconds: a command comes every {rate} s"
+            text += f"; if {rate} per second are meant, write {way}"
             yield value.lineno, text
 
 

@@ -20,9 +20,12 @@ class Robot:
 @pytest.mark.parametrize(
     ("code", "told"),
     [
-        ("@timer(500)\ndef f(): ...", "a period is in seconds: the first call comes after 500 s; for 500 ms write 0.5"),
-        ("self.create_timer(100, self.f)", "the first call comes after 100 s; for 100 ms write 0.1"),
-        ("self.create_timer(timer_period_sec=2000, callback=f)", "for 2000 ms write 2"),
+        (
+            "@timer(500)\ndef f(): ...",
+            "a period is in seconds: the first call comes after 500 s; if 500 ms are meant, write 0.5",
+        ),
+        ("self.create_timer(100, self.f)", "the first call comes after 100 s; if 100 ms are meant, write 0.1"),
+        ("self.create_timer(timer_period_sec=2000, callback=f)", "if 2000 ms are meant, write 2"),
         (
             "period = 500\nself.create_timer(period, self.f)",
             "period is 500, and a period is in seconds: the first call",
@@ -60,8 +63,11 @@ CREATED = "class A(Node):\n    def __init__(self):\n        self.create_timer({}
 @pytest.mark.parametrize(
     ("code", "told"),
     [
-        (DRIVES.format(DECORATED.format(10)), "a command comes every 10 s; for 10 per second write @timer(hz=10)"),
-        (FILLS.format(CREATED.format(20)), "every 20 s; for 20 per second write create_timer(1 / 20, ...)"),
+        (
+            DRIVES.format(DECORATED.format(10)),
+            "a command comes every 10 s; if 10 per second are meant, write @timer(hz=10)",
+        ),
+        (FILLS.format(CREATED.format(20)), "every 20 s; if 20 per second are meant, write create_timer(1 / 20, ...)"),
         ("rate = 10\n" + FILLS.format(CREATED.format("rate")), "rate is 10, and a period is in seconds: a command"),
         (DRIVES.format(DECORATED.format(5)), ""),
         (DRIVES.format(DECORATED.format("10.0")), ""),

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import inspect
 import logging
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from itertools import combinations, permutations
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar, cast
 
-from graphflow.analysis.user_code import short_place
+from graphflow.analysis.user_code import short_place, users_frame
 from graphflow.msgs import registry
 from graphflow.msgs.homes import homes
 from graphflow.msgs.registry import KINDS
@@ -115,6 +116,9 @@ def _class_advice(word: str, value: object) -> str:
     if not word.endswith("_type"):
         return ""
     if isinstance(value, str):
+        caller = users_frame(sys._getframe())
+        if caller is not None and isinstance(caller.f_globals.get(value), type):
+            return f"write {value}, without quotes"
         names = [f"{p}/{kind}/{n}" for p in registry.packages() for kind in KINDS for n in registry.names_in(p, kind)]
         found = next((n for n in names if value in (n, n.replace("/", "."), n.rpartition("/")[2])), "")
         package, _, base = found.replace("/", ".").rpartition(".")

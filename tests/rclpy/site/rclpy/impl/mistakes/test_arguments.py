@@ -43,6 +43,11 @@ CALLS: list[tuple[Callable[[Any], Any], type[Exception], str]] = [
         "msg_type of create_publisher must be a message class, got 'Strung': write create_publisher(msg_type, topic, ",
     ),
     (
+        lambda n: n.create_publisher("String", "chat", 10),
+        AttributeError,
+        "msg_type of create_publisher must be a message class, got 'String': write String, without quotes",
+    ),
+    (
         lambda n: n.create_publisher("std_msgs/msg/String", "chat", 10),
         AttributeError,
         "got 'std_msgs/msg/String': give the class: from std_msgs.msg import String",
