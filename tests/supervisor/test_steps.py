@@ -107,6 +107,16 @@ def generate_launch_description():
     assert launch.text.index("it is late") < launch.text.index("has ended")
 
 
+@slow
+@pytest.mark.real
+def test_a_launch_file_without_actions(machine: Machine, project: Path) -> None:
+    """Is told so before it has ended, which it has at once."""
+    text = "from launch import LaunchDescription\ndef generate_launch_description():\n    return LaunchDescription()\n"
+    launch = machine.start("launch", write(project, text, "none.launch.py"), cwd=project)
+    assert launch.wait() == 0
+    assert launch.text.index("the launch description has no actions") < launch.text.index("has ended")
+
+
 TYPE = "example_interfaces/srv/AddTwoInts"
 
 

@@ -379,6 +379,7 @@ class _Launch:
             from graphflow.supervisor.processes.watching import watch
 
             background.append(asyncio.create_task(watch(supervisor, plan, interfaces)))
+        await asyncio.sleep(0)  # lets `examine` begin: a graph without processes ends at once
         try:
             code = await supervisor.run()
             await control.wait_followed()
