@@ -30,8 +30,7 @@ FOLDERS_BOUND = 5000
 PACKAGES_BOUND = 1000
 _VALUE_BOUND = 10_000
 """Length in characters of the value of a CMake variable."""
-_LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}
-"""Folders that colcon makes, and others without packages."""
+_LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}  # of colcon, and without packages
 _MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files that exclude their folder and everything below it."""
 _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
@@ -159,21 +158,16 @@ class Package:
     @property
     def why_no_executable(self) -> str:
         """The faults of `setup.py` as the end of a message, which may explain a missing executable; or empty."""
-        return "".join(f"; {fault}" for fault in [*self._no_setup, *self.setup.faults, *self._setup_cfg[1]])
+        unnamed = [] if self.entry_points else self.setup.without_executables(self.name)
+        return "".join(f"; {fault}" for fault in [*self._no_setup, *self.setup.faults, *self._setup_cfg[1]] or unnamed)
 
     @property
     def _no_setup(self) -> list[str]:
-        """The fault of a package with modules of which no file makes executables; or empty."""
-        modules = sorted(file for file in (self.folder / self.name).glob("*.py") if file.name != "__init__.py")
-        if not modules or self.entry_points:
+        """The fault of a package with modules but no file that declares executables; or empty."""
+        has_modules = any(file.name != "__init__.py" for file in (self.folder / self.name).glob("*.py"))
+        if not has_modules or self.entry_points or any((self.folder / name).is_file() for name in _SETUPS):
             return []
-        if not any((self.folder / name).is_file() for name in _SETUPS):
-            return [f"{self.folder} has no setup.py, whose console_scripts name the executables"]
-        program = next((file.stem for file in modules if re.search(r"^def main\(", _text(file), re.MULTILINE)), None)
-        if program is None or self.setup.faults or self.setup.computes_scripts or not self.setup.file.is_file():
-            return []
-        line = f"{program} = {self.name}.{program}:main"
-        return [f"{self.setup.file} names no executable: add '{line}' to its console_scripts"]
+        return [f"{self.folder} has no setup.py, whose console_scripts name the executables"]
 
     def fault_of(self, executable: str) -> str | None:
         """Return the fault of an executable: its module or function does not exist; None for none."""

@@ -7,12 +7,14 @@ import os
 import re
 import symtable
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.names import did_you_mean, nearest
+from graphflow.reading import found_text
 
 _SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[[\w\s.,-]*\]\s*)?")
 """An entry point; extras in brackets are ignored."""
@@ -128,6 +130,15 @@ class SetupFile:
             return [f"{self.file}:{line}: SyntaxError: {why}; until that is corrected it has no executables"]
         found = [*_misspelt(self.tree), *(fault for node in self._elements() if (fault := self._fault_of(node)))]
         return [f"{self.file}:{line}: {text}" for line, text in [*found, *self._twice()]]
+
+    def without_executables(self, package: str) -> list[str]:
+        """Return the fault that no executable is named, with the line for a module that has a `main()`; or empty."""
+        for file in sorted((self.file.parent / package).glob("*.py")) if self.file.is_file() else ():
+            with suppress(OSError):
+                if re.search(r"^def main\(", found_text(file, "replace"), re.MULTILINE) and not self.computes_scripts:
+                    line = f"{file.stem} = {package}.{file.stem}:main"
+                    return [f"{self.file} names no executable: add '{line}' to its console_scripts"]
+        return []
 
     def _twice(self) -> Iterator[tuple[int, str]]:
         """Yield executables with the name of another, of which only the last counts."""

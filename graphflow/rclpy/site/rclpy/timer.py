@@ -15,6 +15,7 @@ from rclpy.clock import Clock
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
 from rclpy.handle import Handle
 from rclpy.impl.mistakes.origins import Created
+from rclpy.impl.mistakes.timer_arguments import warn_of_argument
 from rclpy.impl.reexports import passed_on
 from rclpy.time import Time
 from rclpy.utilities import get_default_context
@@ -78,6 +79,8 @@ class Timer(Created):
     def callback(self, value: Callable[..., object] | None) -> None:
         self._callback = value
         self._takes_info = value is not None and _takes_one(value)
+        if value is not None and self._takes_info:
+            warn_of_argument(value)
 
     @property
     def handle(self) -> Handle:

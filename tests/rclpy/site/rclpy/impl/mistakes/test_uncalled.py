@@ -14,7 +14,7 @@ from rclpy.node import Node
 from tests.rclpy.conftest import Spinner
 
 SOURCE = """
-def tick(timer):
+def tick(timer=None):
     timer.cancel
     timer.period
     timer.state == "on"
