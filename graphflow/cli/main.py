@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
-from pathlib import Path
 from typing import NoReturn
 
 import click
@@ -85,6 +84,8 @@ _OTHER_WORDS = {"kill": "stop", "interfaces": "interface"}
 
 def _runs(words: Sequence[str]) -> bool:
     """Whether words are a package with an executable: `run` is forgotten."""
+    from pathlib import Path
+
     from graphflow.workspace.executables import EXECUTABLES
     from graphflow.workspace.packages import find_workspace
 
