@@ -1,4 +1,4 @@
-"""Hints for an empty listing, and for topics without messages: other domains, and net profiles."""
+"""Hints for an empty listing, and for topics without messages: other domains, net profiles, inactive publishers."""
 
 from __future__ import annotations
 
@@ -6,9 +6,13 @@ from collections.abc import Iterable
 
 from graphflow.domain import domain_id
 from graphflow.introspect.graph_view import View
+from graphflow.introspect.lifecycles import idle, managed_nodes
 from graphflow.machines.domains import COMMANDS, SHOWN, by_domain, remedy
 from graphflow.transport.client import Client
-from graphflow.wire.liveliness import NODES
+from graphflow.wire.liveliness import NODES, Kind
+
+ANSWER_LIMIT = 1.0
+"""Seconds that a lifecycle node has to tell its state."""
 
 
 def nothing_here(what: str) -> str:
@@ -33,6 +37,15 @@ def nothing_here(what: str) -> str:
 
 
 def why_silent(topics: Iterable[str]) -> str:
-    """Describe what may keep the messages of one of some topics from this machine; empty if nothing is known to."""
+    """Describe what may keep the messages of one of some topics from this machine; empty if nothing is known to.
+
+    It is a net profile, or a publisher's lifecycle node that is not active.
+    """
     with View(domain_id()) as view:
-        return next(filter(None, map(view.why_silent, topics)), "")
+        for topic in topics:
+            publishers = {e.node_name for e in view.cache.endpoints(Kind.PUBLISHER, topic)}
+            is_managed = not publishers.isdisjoint(managed_nodes(view.cache))
+            texts = idle(view, ANSWER_LIMIT).hints if is_managed else []
+            if text := view.why_silent(topic) or next((t for t in texts if t.partition(" ")[0] in publishers), ""):
+                return text
+    return ""

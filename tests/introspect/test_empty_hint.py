@@ -8,6 +8,8 @@ import pytest
 
 from graphflow.introspect import empty_hint
 from graphflow.introspect.empty_hint import nothing_here, why_silent
+from graphflow.introspect.lifecycles import Idle
+from graphflow.wire.liveliness import Entity, Kind
 
 
 class Seen:
@@ -49,24 +51,33 @@ def test_where_nodes_run(nodes: list[str], text: str, monkeypatch: pytest.Monkey
     assert nothing_here("no nodes") == f"no nodes in domain 5{', ' if text.startswith('and') else '; '}{text}"
 
 
+class View:
+    """Knows why one topic is silent, and the publisher of another."""
+
+    def __init__(self, domain: int) -> None:
+        self.cache = self
+        self.reasons = {"/b": "a net profile"}
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Nothing is open."""
+
+    def endpoints(self, kind: Kind, name: str = "") -> list[Entity]:
+        node = Entity(0, "a1", 0, 1, kind, "/", "camera", name, "std_msgs/msg/String", "RIHS01_0")
+        return [node] if name == "/image" else []
+
+    def why_silent(self, topic: str) -> str:
+        return self.reasons.get(topic, "")
+
+
 def test_topics_without_messages(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first reason that is known."""
-
-    class View:
-        """Knows why one topic is silent."""
-
-        def __init__(self, domain: int) -> None:
-            self.reasons = {"/b": "a net profile"}
-
-        def __enter__(self) -> Self:
-            return self
-
-        def __exit__(self, *_: object) -> None:
-            """Nothing is open."""
-
-        def why_silent(self, topic: str) -> str:
-            return self.reasons.get(topic, "")
-
+    """The first reason that is known: a net profile, or a publisher that is not active."""
+    texts = ["/lidar is unconfigured", "/camera is unconfigured"]
     monkeypatch.setattr(empty_hint, "View", View)
+    monkeypatch.setattr(empty_hint, "managed_nodes", lambda cache: ["/camera", "/lidar"])
+    monkeypatch.setattr(empty_hint, "idle", lambda view, limit: Idle(texts, []))
     assert why_silent(["/a", "/b"]) == "a net profile"
+    assert why_silent(["/a", "/image", "/b"]) == "/camera is unconfigured"
     assert why_silent(["/a"]) == ""

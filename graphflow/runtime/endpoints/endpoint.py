@@ -221,12 +221,24 @@ class Endpoint(Part):
 
     def _announced(self) -> Entity:
         if self.entity is None:
-            raise ClosedError(
-                f"{self.name}: node {self.host.full_name} is not running; use this from its handlers and tasks, which "
-                "graphflow.run(node) runs, or in a script within async with graphflow.running(node):"
-            )
+            raise ClosedError(f"{self.name}: node {self.host.full_name} {_how_to_run()}")
         return self.entity
 
 
 def _nothing() -> None:
     """Do nothing: there is no listener."""
+
+
+def _how_to_run() -> str:
+    """Say that a node does not run, and where its endpoints are used, from the code that uses one too early."""
+    import sys
+
+    from graphflow.analysis.user_code import users_frame
+
+    caller = users_frame(sys._getframe())
+    if caller is not None and caller.f_code.co_name == "__init__":
+        return "does not run yet in __init__; do this in async def on_start(self), or in a handler"
+    return (
+        "is not running; use this from its handlers and tasks, which graphflow.run(node) runs, "
+        "or in a script within async with graphflow.running(node):"
+    )

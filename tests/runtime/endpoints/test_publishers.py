@@ -114,6 +114,20 @@ async def test_the_elements_of_a_first_message_without_subscriptions_are_checked
         node.path.publish(path)
 
 
+def test_a_message_that_a_constructor_publishes() -> None:
+    """It comes too early; the error names where it can be published."""
+
+    class Early(Node):
+        words = Publisher(String, "chatter")
+
+        def __init__(self) -> None:
+            super().__init__()
+            self.words.publish(String())
+
+    with pytest.raises(ClosedError, match="node /early does not run yet in __init__; do this in async def on_start"):
+        Early()
+
+
 async def test_publishing_needs_a_running_node(graph: Graph) -> None:
     """Publishing before the start and after the stop raises an error and is not counted."""
     node = Speaker()
