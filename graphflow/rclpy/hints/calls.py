@@ -58,6 +58,10 @@ def called_value(error: BaseException, frames: list[FrameType]) -> str:
     users = own(frames)
     if not isinstance(error, TypeError) or found is None or not users or users[-1] is not frames[-1]:
         return ""
+    if found[1] in _METHODS:
+        paths = re.findall(r"([A-Za-z_][\w.]*)\(", line_of(frames))
+        meant = next((path for path in paths if type(named(path, users[-1])).__name__ == found[1]), "")
+        return f"write {meant}.{_METHODS[found[1]]}" if meant else ""
     called = re.findall(r"((?:\b[A-Za-z_]\w*|(?<=\)))(?:\.[A-Za-z_]\w*)*)\(\)", line_of(frames))
     fits = [path for path in called if type(named(path, users[-1])).__name__ == found[1]]
     fits = fits or [path for path in called if path.rpartition(".")[2] in _VALUES]
@@ -67,6 +71,12 @@ def called_value(error: BaseException, frames: list[FrameType]) -> str:
     return f"{fits[0].lstrip('.')} is not a function: remove the parentheses after it"
 
 
+_METHODS = {
+    "Publisher": "publish(msg)",
+    "Client": "call_async(request)",
+    "ActionClient": "send_goal_async(goal)",
+}
+"""What is called on an object of rclpy that is called itself."""
 _VALUES = ("value", "is_cancel_requested", "is_active", "request", "status", "nanoseconds", "goal_id")
 """Properties of rclpy that are often called like methods."""
 

@@ -168,6 +168,20 @@ class Handle:
 
 
 @pytest.mark.parametrize(
+    ("line", "way"),
+    [("pub(String())", "pub.publish(msg)"), ("n.client(AddTwoInts.Request())", "n.client.call_async(request)")],
+)
+def test_objects_that_are_called(tmp_path: Path, node: Node, line: str, way: str) -> None:
+    """The method that is meant is named."""
+    file = tmp_path / "wrong.py"
+    file.write_text(line)
+    holder: Any = type("Holder", (), {})()
+    holder.client = node.create_client(AddTwoInts, "add")
+    known = {"pub": node.create_publisher(String, "chat", 10), "n": holder, "String": String, "AddTwoInts": AddTwoInts}
+    assert hint_of(lambda: exec(compile(line, str(file), "exec"), known)) == f"write {way}"
+
+
+@pytest.mark.parametrize(
     ("line", "path"),
     [
         ("handle.is_cancel_requested()", "handle.is_cancel_requested"),
