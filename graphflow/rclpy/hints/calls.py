@@ -76,7 +76,7 @@ _METHODS = {
     "Client": "call_async(request)",
     "ActionClient": "send_goal_async(goal)",
 }
-"""What is called on an object of rclpy that is called itself."""
+"""Methods that are meant where an object of rclpy is called itself, by class."""
 _VALUES = ("value", "is_cancel_requested", "is_active", "request", "status", "nanoseconds", "goal_id")
 """Properties of rclpy that are often called like methods."""
 

@@ -9,6 +9,7 @@ import inspect
 import sys
 from collections.abc import Callable
 from functools import cache, wraps
+from types import FunctionType, MethodType
 from typing import Any, ClassVar, Literal, NamedTuple, ParamSpec, Self, TypeVar
 
 from graphflow.errors import DeclarationError
@@ -342,6 +343,10 @@ def with_argument_hints(function: Callable[P, T]) -> Callable[P, T]:
             if called == "Param" and isinstance(args[1], str):
                 way = f"leave out {args[1]!r}, the parameter has the name of its attribute; write Param({args[2]!r})"
                 raise DeclarationError(f"{here()}: {called} takes no name first: {way}")
+            if called == "timer" and isinstance(args[1], FunctionType | MethodType):
+                name = args[1].__name__
+                way = f"write self.create_timer({args[0]!r}, self.{name}), or @timer({args[0]!r}) above {name}"
+                raise DeclarationError(f"{here()}: @timer takes no callback: {way}")
             taken = ", ".join(name for name in first if name != "self")
             more = f"; pass the rest by keyword: {', '.join(rest)}" if rest else ""
             raise DeclarationError(f"{here()}: {called} takes {taken}{more}")

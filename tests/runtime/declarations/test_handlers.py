@@ -50,6 +50,7 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: subscription(String, "x", group=anything(Group)), "group= takes a Group, not <class"),
     (lambda: timer(0.1, group=anything(1)), "group= takes a Group, not 1"),
     (lambda: service(AddTwoInts, "x", group=anything(1)), "group= takes a Group, not 1"),
+    (lambda: anything(timer)(1.0, anything), "self.create_timer(1.0, self.anything), or @timer(1.0) above anything"),
     (lambda: timer(), "@timer: give either a period in seconds or hz="),
     (lambda: timer(0.1, hz=10), "@timer: give either a period in seconds or hz="),
     (lambda: timer(0.0), "@timer: a period must be a positive number, not 0.0"),

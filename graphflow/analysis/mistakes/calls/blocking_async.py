@@ -1,4 +1,4 @@
-"""Lines of an `async def` that stop its whole event loop: `time.sleep`, and an endless loop without an `await`."""
+"""Lines of an `async def` that stop its event loop: `time.sleep`, `input`, and an endless loop without an `await`."""
 
 from __future__ import annotations
 
@@ -24,10 +24,22 @@ def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
             ):
                 text = "time.sleep in an async def stops every handler of the process"
                 yield node.lineno, f"{text}; write await self.clock.sleep({ast.unparse(pause)})"
+            case ast.While(test=ast.Constant(value=True | 1)) if (asking := _input_in(node)) is not None:
+                call = ", ".join(["input", *map(ast.unparse, asking.args)])
+                text = "input() in an async def stops every handler of the process until a line comes"
+                yield asking.lineno, f"{text}; write await self.offload({call})"
             case ast.While(test=ast.Constant(value=True | 1)):
                 if not any(_pauses(part) for part, _ in walk(node, into_functions=False)):
                     text = "this loop never awaits, so no other handler of the process runs"
                     yield node.lineno, f"{text}; end each turn with await self.clock.sleep(0.1), or write @timer(0.1)"
+
+
+def _input_in(loop: ast.While) -> ast.Call | None:
+    """Return the call of `input` in a loop; None if there is none."""
+    for part, _ in walk(loop, into_functions=False):
+        if isinstance(part, ast.Call) and isinstance(part.func, ast.Name) and part.func.id == "input":
+            return part
+    return None
 
 
 def _pauses(part: ast.AST) -> bool:

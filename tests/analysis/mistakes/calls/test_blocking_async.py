@@ -35,6 +35,18 @@ def test_a_loop_without_a_pause(condition: str) -> None:
     )
 
 
+@pytest.mark.parametrize("pause", ["pass", "await self.clock.sleep(0.1)"])
+def test_a_loop_that_reads_lines(pause: str) -> None:
+    """Whether it pauses or not: nothing runs until a line comes."""
+    [(line, text)] = told(f"while True:\n    line = input('> ')\n    {pause}")
+    assert line == 4
+    assert text == (
+        "input() in an async def stops every handler of the process until a line comes; "
+        "write await self.offload(input, '> ')"
+    )
+    assert told("while True:\n    line = await self.offload(input, '> ')") == []
+
+
 def test_a_pause_of_another_function() -> None:
     """It is none of the loop's."""
     [(line, _)] = told("while True:\n    def work():\n        return 1\n    self.use(work)")
