@@ -20,9 +20,11 @@ def words_in(module: ast.Module) -> set[str]:
 @cache
 def methods_in(module: ast.Module) -> set[str]:
     """Return the words by which a module may refer to methods: attributes, strings, and names in bodies of classes."""
-    bodies = [part for cls in nodes_in(module) if isinstance(cls, ast.ClassDef) for part in cls.body]
-    outside = [part for part in bodies if not isinstance(part, FunctionNode)]
-    return _attributes_in(module).union(*map(_names_in, outside))
+    found = set(_attributes_in(module))
+    for part in (part for cls in nodes_in(module) if isinstance(cls, ast.ClassDef) for part in cls.body):
+        for outside in part.decorator_list if isinstance(part, FunctionNode) else [part]:
+            found |= _names_in(outside)
+    return found
 
 
 def _names_in(tree: ast.AST) -> set[str]:

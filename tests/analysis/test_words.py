@@ -18,8 +18,8 @@ def test_words_are_what_is_read_and_not_what_is_shown() -> None:
 
 def test_methods_are_referred_to_by_attributes_strings_and_names_in_classes() -> None:
     """A name in a function is that of a variable."""
-    text = f"{TEXT}\nclass A:\n    again = once\n    def tick(self):\n        print(other)"
-    assert methods_in(ast.parse(text)) == {"read", "given", "log", "info", "once"}
+    text = f"{TEXT}\nclass A:\n    again = once\n    @action(accept=may)\n    def tick(self):\n        print(other)"
+    assert methods_in(ast.parse(text)) == {"read", "given", "log", "info", "once", "action", "may"}
 
 
 @pytest.mark.parametrize(

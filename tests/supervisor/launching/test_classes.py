@@ -183,11 +183,11 @@ def test_a_project_without_its_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("root", ["", "launch"])
 def test_a_module_in_a_source_folder(tmp_path: Path, root: str) -> None:
     """It is to be moved beside the folder of the graph files, and is not taken for a node of graphflow."""
-    (tmp_path / "src" / "nodes").mkdir(parents=True)
+    (tmp_path / "src" / "course").mkdir(parents=True)
     (tmp_path / "launch").mkdir()
-    text = _no_module("nodes.talkers", "nodes.talkers", "Talker", str(tmp_path / root))
+    text = _no_module("course.talker", "course.talker", "Talker", str(tmp_path / root))
     way = f"move it to {tmp_path}, and the graph file to {tmp_path / 'graphs'}"
-    assert text.endswith(f"; {tmp_path / 'src' / 'nodes'} is not found there: {way}")
+    assert text.endswith(f"; {tmp_path / 'src' / 'course'} is not found there: {way}")
 
 
 @pytest.mark.parametrize("root", ["", "other"])

@@ -88,6 +88,8 @@ def test_methods_that_are_meant_to_be_called(told: Told, body: str, text: str) -
         "def handle_outlier(self, reason: str): ...",
         "def drive(self):\n    other.out.publish(Int32())",
         "def drive(self):\n    self.out.publish(Int32())\nrun = drive",
+        "def can(self, goal: Fibonacci.Goal):\n    return True\n"
+        '@action(Fibonacci, "count", accept=can)\nasync def count(self, goal: Fibonacci.Handle): ...',
         "def go(self):\n    getattr(self, f'on_{self.rate}')()\ndef on_idle(self): ...",
         "def go(self):\n    getattr(self, 'on_' + self.rate)()\ndef on_idle(self): ...",
         "def go(self):\n    getattr(self, f'{self.rate}_callback')()\ndef a_callback(self): ...",
