@@ -124,7 +124,7 @@ def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
         parent, _, last = module.rpartition(".")
         beside = [m.name for m in iter_modules(getattr(sys.modules.get(parent), "__path__", []))]
         hint = _other_project(module, Path(root)) or did_you_mean(last, beside)
-        hint = hint or _above(module, Path(root)) or _in_source_folder(module, Path(root)) or _bundled(wanted)
+        hint = hint or _above(module, Path(root)) or _in_source_folder(wanted, Path(root)) or _bundled(wanted)
         hint = hint or f"; modules are looked for in {root}"
     return f"cannot import {wanted}: there is no module {module!r}{hint}"
 
@@ -150,12 +150,11 @@ def _above(module: str, root: Path) -> str:
     return ""
 
 
-def _in_source_folder(module: str, root: Path) -> str:
-    """Suggest to move a missing module out of a folder `src`."""
-    top = module.partition(".")[0]
-    for folder in (root, *list(root.parents)[:2]):
-        found = next((path for path in (folder / "src" / top, folder / "src" / f"{top}.py") if path.exists()), None)
-        if found is not None:
+def _in_source_folder(wanted: str, root: Path) -> str:
+    """Suggest to move a module out of the folder `src` of the project, or of the folder above."""
+    for folder in (root, root.parent):
+        if (folder / "src" / f"{wanted.replace('.', '/')}.py").is_file():
+            found = folder / "src" / wanted.partition(".")[0]
             return f"; {found} is not found there: move it to {folder}, and the graph file to {folder / 'graphs'}"
     return ""
 

@@ -184,10 +184,15 @@ def test_a_project_without_its_file(tmp_path: Path) -> None:
 def test_a_module_in_a_source_folder(tmp_path: Path, root: str) -> None:
     """It is to be moved beside the folder of the graph files, and is not taken for a node of graphflow."""
     (tmp_path / "src" / "course").mkdir(parents=True)
+    (tmp_path / "src" / "course" / "talker.py").touch()
     (tmp_path / "launch").mkdir()
     text = _no_module("course.talker", "course.talker", "Talker", str(tmp_path / root))
     way = f"move it to {tmp_path}, and the graph file to {tmp_path / 'graphs'}"
     assert text.endswith(f"; {tmp_path / 'src' / 'course'} is not found there: {way}")
+    assert "src" not in _no_module("course", "course.other", "Talker", str(tmp_path / root)).replace(str(tmp_path), "")
+    below = tmp_path / "other" / "project"
+    below.mkdir(parents=True)
+    assert str(tmp_path / "src") not in _no_module("course", "course.talker", "Talker", str(below))
 
 
 @pytest.mark.parametrize("root", ["", "other"])
