@@ -45,6 +45,14 @@ def found_text(path: Path, errors: str = "strict", bound: int = FOUND_BOUND) -> 
     return found_bytes(path, bound).decode("utf-8-sig", errors).replace("\r\n", "\n").replace("\r", "\n")
 
 
+def lenient_text(path: Path, bound: int = FOUND_BOUND) -> str:
+    """Return the text of a file that may be anything; "" if it cannot be read. Bytes that are no UTF-8 are replaced."""
+    try:
+        return found_text(path, "replace", bound)
+    except OSError:
+        return ""
+
+
 def why_no_file(path: Path, absent: str = "there is no such file") -> str:
     """Return why a path is not read as a file: it is a FIFO, a socket or a device, or, as `absent` says, not there."""
     return "it is not a regular file" if path.exists() and not path.is_dir() else absent

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.reading import found_bytes, found_text, why_no_file
+from graphflow.reading import found_bytes, found_text, lenient_text, why_no_file
 
 pytestmark = pytest.mark.timeout(20)
 
@@ -76,3 +76,12 @@ def test_why_there_is_no_file(tmp_path: Path) -> None:
     assert why_no_file(fifo) == "it is not a regular file"
     assert why_no_file(tmp_path / "other", "there is no bag") == "there is no bag"
     assert why_no_file(tmp_path) == "there is no such file"
+
+
+def test_a_file_that_may_be_anything(tmp_path: Path) -> None:
+    """Its text, with other bytes replaced; nothing of one that is not there, or is too large."""
+    file = tmp_path / "any"
+    assert lenient_text(file) == lenient_text(tmp_path) == ""
+    file.write_bytes(b"a\xff\r\n")
+    assert lenient_text(file) == "a\ufffd\n"
+    assert lenient_text(file, 2) == ""

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from graphflow.folders import home
 from graphflow.names import nearest
-from graphflow.reading import found_text
+from graphflow.reading import lenient_text
 from graphflow.system import SITE
 from graphflow.workspace.setup_file import EntryPoint, SetupFile, entry_point, function_fault, starts_nodes
 
@@ -30,7 +30,8 @@ FOLDERS_BOUND = 5000
 PACKAGES_BOUND = 1000
 _VALUE_BOUND = 10_000
 """Length in characters of the value of a CMake variable."""
-_LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}  # of colcon, and without packages
+_LEFT_OUT = {"build", "install", "log", "node_modules", "__pycache__", "venv"}
+"""Folders that colcon makes, and others without packages."""
 _MARKS = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 """Files that exclude their folder and everything below it."""
 _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
@@ -71,7 +72,7 @@ class Package:
     @cached_property
     def setup(self) -> SetupFile:
         """Its `setup.py`, which need not exist."""
-        return SetupFile(self.folder / "setup.py", _text(self.folder / "setup.py"))
+        return SetupFile(self.folder / "setup.py", lenient_text(self.folder / "setup.py"))
 
     @cached_property
     def python_folder(self) -> Path:
@@ -178,7 +179,7 @@ class Package:
         place = f"{self.setup.file}:{line}" if line is not None else f"{self.folder / 'setup.cfg'}"
         head = f"{place}: {executable} is {entry.module}:{entry.function}, and"
         if file.is_file():
-            fault = None if is_graphflows(file) else function_fault(entry, file, _text(file))
+            fault = None if is_graphflows(file) else function_fault(entry, file, lenient_text(file))
             return None if fault is None else f"{head} {fault}"
         top = entry.module.partition(".")[0]
         if (folder := self.setup.renamed.get(top)) is not None:
@@ -201,7 +202,12 @@ class Package:
         meant = EntryPoint(f"{entry.module.rpartition('.')[0]}.{executable}".lstrip("."), entry.function)
         file = self.file_of(meant)
         is_started = any(other.module == meant.module for other in self.entry_points.values())
-        if is_started or not file.is_file() or not starts_nodes(_text(file), entry.function) or self._imports(file):
+        if (
+            is_started
+            or not file.is_file()
+            or not starts_nodes(lenient_text(file), entry.function)
+            or self._imports(file)
+        ):
             return None
         return (
             f"{self.setup.file}:{line}: {executable} starts {entry.module}:{entry.function}, as {first} does, and "
@@ -215,7 +221,7 @@ class Package:
             rf"\b{re.escape(module.stem)}(\.py\b|\b.*\bimport\b)|\bimport\b.*\b{re.escape(module.stem)}\b"
         )
         files = (file for file in self.folder.rglob("*.py") if file not in (module, self.setup.file))
-        return any(word.search(_text(file)) for file in files)
+        return any(word.search(lenient_text(file)) for file in files)
 
     def _nearest_module(self, name: str) -> str | None:
         """Return the module whose last part is that of a name, or else the one most similar to it."""
@@ -344,7 +350,7 @@ def folders(source: Path) -> Iterator[Folder]:
             return
         path, depth = waiting.popleft()
         inside, files = _listing(path)
-        name = _NAME.search(_text(path / "package.xml")) if "package.xml" in files else None
+        name = _NAME.search(lenient_text(path / "package.xml")) if "package.xml" in files else None
         found = Folder(path, files, None if name is None else name[1])
         if found.mark is not None:
             yield Folder(path, files, None)
@@ -364,16 +370,9 @@ def _listing(folder: Path) -> tuple[list[str], set[str]]:
     return sorted(f for f in folders if not (folder / f).is_symlink()), set(files)
 
 
-def _text(file: Path) -> str:
-    try:
-        return found_text(file, "replace")
-    except OSError:
-        return ""
-
-
 def cmake_text(package: Package) -> str:
     """Read the `CMakeLists.txt` of a package, without comments and with literal variables substituted."""
-    text = re.sub(r"#.*", "", _text(package.folder / "CMakeLists.txt"))
+    text = re.sub(r"#.*", "", lenient_text(package.folder / "CMakeLists.txt"))
     known = {"PROJECT_NAME": package.name, "CMAKE_CURRENT_SOURCE_DIR": ".", "PROJECT_SOURCE_DIR": "."}
 
     def expanded(text: str) -> str:
@@ -393,7 +392,7 @@ def _of_setup_cfg(file: Path) -> tuple[dict[str, EntryPoint], list[str]]:
     """Return the executables of a `setup.cfg`, and the faults of its lines."""
     import configparser
 
-    parser, text = configparser.ConfigParser(), _text(file)
+    parser, text = configparser.ConfigParser(), lenient_text(file)
     try:
         parser.read_string(text)
         lines = parser.get("options.entry_points", "console_scripts", fallback="").splitlines()
@@ -432,13 +431,13 @@ def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
 
 def is_graphflows(file: Path) -> bool:
     """Return whether a Python file is written for graphflow, and not for rclpy."""
-    return "graphflow" in _text(file) and not uses_ros(file)
+    return "graphflow" in lenient_text(file) and not uses_ros(file)
 
 
 def uses_ros(file: Path) -> bool:
     """Return whether a Python file imports rclpy or launch, at the top or in a function."""
     try:
-        tree = ast.parse(_text(file))
+        tree = ast.parse(lenient_text(file))
     except (SyntaxError, ValueError):
         return False
     for node in ast.walk(tree):

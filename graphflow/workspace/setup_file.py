@@ -7,14 +7,13 @@ import os
 import re
 import symtable
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.names import did_you_mean, nearest
-from graphflow.reading import found_text
+from graphflow.reading import lenient_text
 
 _SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[[\w\s.,-]*\]\s*)?")
 """An entry point; extras in brackets are ignored."""
@@ -133,11 +132,12 @@ class SetupFile:
 
     def without_executables(self, package: str) -> list[str]:
         """Return the fault that no executable is named, with the line for a module that has a `main()`; or empty."""
-        for file in sorted((self.file.parent / package).glob("*.py")) if self.file.is_file() else ():
-            with suppress(OSError):
-                if re.search(r"^def main\(", found_text(file, "replace"), re.MULTILINE) and not self.computes_scripts:
-                    line = f"{file.stem} = {package}.{file.stem}:main"
-                    return [f"{self.file} names no executable: add '{line}' to its console_scripts"]
+        if self.computes_scripts or not self.file.is_file():
+            return []
+        for file in sorted((self.file.parent / package).glob("*.py")):
+            if re.search(r"^def main\(", lenient_text(file), re.MULTILINE):
+                line = f"{file.stem} = {package}.{file.stem}:main"
+                return [f"{self.file} names no executable: add '{line}' to its console_scripts"]
         return []
 
     def _twice(self) -> Iterator[tuple[int, str]]:

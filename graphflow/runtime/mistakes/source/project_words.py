@@ -14,7 +14,7 @@ from pathlib import Path
 
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.user_code import is_installed
-from graphflow.reading import found_text
+from graphflow.reading import found_text, lenient_text
 from graphflow.runtime.callables import file_of
 
 FOLDERS_BOUND, FILES_BOUND, DEPTH = 200, 500, 3
@@ -40,11 +40,14 @@ def other_modules(file: str, word: str) -> Iterator[ast.Module]:
 
 
 def is_in_other_files(file: str, word: str) -> bool:
-    """Return whether another file of the project, loaded or not, has a word as an attribute or a string: as a test."""
+    """Return whether another file of the project, loaded or not, has a word as an attribute or a string."""
     from graphflow.workspace.project import project_root
 
     pattern = re.compile(rf"(?:\.|[\"']){word}\b")
-    return any(path != file and pattern.search(_source(path)) for path in _files(str(project_root(Path(file)))))
+    return any(
+        path != file and pattern.search(lenient_text(Path(path), SIZE_BOUND))
+        for path in _files(str(project_root(Path(file))))
+    )
 
 
 @cache
@@ -58,14 +61,6 @@ def _files(root: str) -> tuple[str, ...]:
         if len(found) > FILES_BOUND:
             break
     return tuple(found[:FILES_BOUND])
-
-
-def _source(file: str) -> str:
-    """Return the text of a file that may be anything, and is not kept; "" if it cannot be read, or is too large."""
-    try:
-        return found_text(Path(file), "replace", SIZE_BOUND)
-    except OSError:
-        return ""
 
 
 @cache
