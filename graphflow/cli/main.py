@@ -89,8 +89,10 @@ def _runs(words: Sequence[str]) -> bool:
     from graphflow.workspace.executables import EXECUTABLES
     from graphflow.workspace.packages import find_workspace
 
-    package = find_workspace(Path.cwd()).packages.get(words[0]) if len(words) > 1 else None
-    return tuple(words[:2]) in EXECUTABLES or (package is not None and words[1] in package.executables)
+    if len(words) < 2 or tuple(words[:2]) in EXECUTABLES:
+        return len(words) > 1
+    package = find_workspace(Path.cwd()).packages.get(words[0])
+    return package is not None and words[1] in package.executables
 
 
 class _Verbs(Verbs):

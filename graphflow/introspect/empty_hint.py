@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from graphflow.domain import domain_id
 from graphflow.introspect.graph_view import View
-from graphflow.introspect.lifecycles import idle, managed_nodes
+from graphflow.introspect.lifecycles import idle
 from graphflow.machines.domains import COMMANDS, SHOWN, by_domain, remedy
 from graphflow.transport.client import Client
 from graphflow.wire.liveliness import NODES, Kind
@@ -43,9 +43,9 @@ def why_silent(topics: Iterable[str]) -> str:
     """
     with View(domain_id()) as view:
         for topic in topics:
-            publishers = {e.node_name for e in view.cache.endpoints(Kind.PUBLISHER, topic)}
-            is_managed = not publishers.isdisjoint(managed_nodes(view.cache))
-            texts = idle(view, ANSWER_LIMIT).hints if is_managed else []
-            if text := view.why_silent(topic) or next((t for t in texts if t.partition(" ")[0] in publishers), ""):
+            if text := view.why_silent(topic):
                 return text
+            publishers = {e.node_name for e in view.cache.endpoints(Kind.PUBLISHER, topic)}
+            if hints := idle(view, ANSWER_LIMIT, publishers).hints:
+                return hints[0]
     return ""

@@ -13,7 +13,7 @@ from graphflow.names import is_hidden
 from graphflow.wire.liveliness import Kind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Container, Sequence
 
     from graphflow.msgs.lifecycle_msgs.msg import State, Transition, TransitionDescription
 
@@ -48,16 +48,17 @@ class Idle(NamedTuple):
     """The names of the nodes that did not answer, or were not asked for lack of time."""
 
 
-def idle(view: View, timeout: float) -> Idle:
+def idle(view: View, timeout: float, among: Container[str] | None = None) -> Idle:
     """Find the lifecycle nodes that are not active; hidden ones are left out.
 
     Args:
         timeout: Seconds to wait for one node; all together get `ROUNDS` times as long.
+        among: The nodes that are asked; all if None.
     """
     end = time.monotonic() + ROUNDS * timeout
     found = Idle([], [])
     for node in managed_nodes(view.cache):
-        if is_hidden(node):
+        if is_hidden(node) or (among is not None and node not in among):
             continue
         try:
             now = LifecycleState(state(view, node, timeout).id) if time.monotonic() < end else None

@@ -7,7 +7,7 @@ from typing import Self
 import pytest
 
 from graphflow.introspect import empty_hint
-from graphflow.introspect.empty_hint import nothing_here, why_silent
+from graphflow.introspect.empty_hint import ANSWER_LIMIT, nothing_here, why_silent
 from graphflow.introspect.lifecycles import Idle
 from graphflow.wire.liveliness import Entity, Kind
 
@@ -74,10 +74,13 @@ class View:
 
 def test_topics_without_messages(monkeypatch: pytest.MonkeyPatch) -> None:
     """The first reason that is known: a net profile, or a publisher that is not active."""
-    texts = ["/lidar is unconfigured", "/camera is unconfigured"]
+
+    def idle(_: object, limit: float, among: set[str]) -> Idle:
+        assert limit == ANSWER_LIMIT
+        return Idle([f"{name} is unconfigured" for name in ("/lidar", "/camera") if name in among], [])
+
     monkeypatch.setattr(empty_hint, "View", View)
-    monkeypatch.setattr(empty_hint, "managed_nodes", lambda cache: ["/camera", "/lidar"])
-    monkeypatch.setattr(empty_hint, "idle", lambda view, limit: Idle(texts, []))
+    monkeypatch.setattr(empty_hint, "idle", idle)
     assert why_silent(["/a", "/b"]) == "a net profile"
     assert why_silent(["/a", "/image", "/b"]) == "/camera is unconfigured"
     assert why_silent(["/a"]) == ""

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from graphflow.cli import exits, output
 from graphflow.cli.messages.conditions import compile_condition
 from graphflow.cli.messages.echo_options import EchoOptions
 from graphflow.cli.temporary_node import run_with_node
+from graphflow.errors import GraphflowError
 from graphflow.introspect.empty_hint import why_silent
 from graphflow.introspect.messages.echo import block, csv, flow, plain, truncated
 from graphflow.introspect.messages.fields import Path, field_path, value_at
@@ -26,7 +28,7 @@ from graphflow.wire.liveliness import Kind
 _EVENTS = {0: "REQUEST_SENT", 1: "REQUEST_RECEIVED", 2: "RESPONSE_SENT", 3: "RESPONSE_RECEIVED"}
 """Events of a service with introspection: service_msgs/msg/ServiceEventInfo."""
 SILENT = 5.0
-"""Seconds without a first message after which a net profile that may not pass the topic is reported."""
+"""Seconds without a first message after which the reason is reported, if it is known."""
 DISCOVERY = 0.2
 """Seconds to wait for the topic's publishers to be discovered."""
 
@@ -106,8 +108,9 @@ class _Raw:
 
 async def _warn_of_silence(node: Node, topic: str) -> None:
     await node.clock.sleep(SILENT)
-    if text := await node.offload(why_silent, [topic]):
-        output.talk(f"WARNING: {text}")
+    with suppress(GraphflowError):  # the router may have gone; then there is nothing to explain
+        if text := await node.offload(why_silent, [topic]):
+            output.talk(f"WARNING: {text}")
 
 
 def _report_loss(event: QosEvent) -> None:
