@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from graphflow.deadlock.protocols import Subject
     from graphflow.runtime.endpoints.threaded import ThreadedClient
     from rclpy.impl.deadlock.reading import Reading
+    from rclpy.impl.entities import Role
     from rclpy.impl.spinning import Entity
     from rclpy.node import Node
     from rclpy.task import Future
@@ -167,7 +168,7 @@ class Conditions:
     def _world(self, node: Node) -> tuple[list[tuple[Entity, str]], list[Run], Subject]:
         """Return a node's callbacks by entity, the tasks that run its methods, and the node as a subject."""
         own = [
-            (entity, method_of(callback_of(entity), node) or role.handler)
+            (entity, _handler(entity, role, node))
             for entity, role in self._reading.roles.items()
             if self._reading.owners[entity] is node
         ]
@@ -197,6 +198,13 @@ class Conditions:
         queues = {self._reading.id_of(entity, "q") for entity, handler in own if handler in found.handlers}
         others_runs = [r for r in self._reading.runs if r is not run and (r.node is node or r in tasks)]
         active = sorted(
-            self._reading.id_of(r) for r in others_runs if self._reading.role_of(r).handler in found.handlers
+            self._reading.id_of(r)
+            for r in others_runs
+            if _handler(r.entity, self._reading.role_of(r), node) in found.handlers
         )
         return SetBy(found.what, tuple(sorted(queues)), tuple(active), verb=found.verb, gives_up=found.gives_up)
+
+
+def _handler(entity: Entity | None, role: Role, node: Node | None) -> str:
+    """Return the method that an entity calls, as the source analysis names it; else the name in its role."""
+    return (method_of(callback_of(entity), node) if entity is not None else "") or role.handler
