@@ -23,7 +23,6 @@ _LOOKING = {"abs", "all", "any", "bool", "dict", "enumerate", "float", "frozense
 _LOOKING |= {"len", "list", "max", "min", "print", "range", "repr", "reversed", "round", "set", "sorted", "str", "sum"}
 _LOOKING |= {"super", "tuple", "type", "zip"}
 """Built-in functions that read their arguments and do nothing else to them."""
-_CREATORS = {"create_timer", "create_subscription", "create_service"}
 _AWAITING = {"as_completed", "create_task", "ensure_future", "gather", "isfuture", "shield", "sleep", "timeout"}
 _AWAITING |= {"timeout_at", "wait", "wait_for", "wrap_future"}
 """Functions of asyncio that only await their arguments."""
@@ -31,6 +30,8 @@ _SAME = {"asarray", "asanyarray", "ascontiguousarray", "reshape", "ravel", "sque
 _SAME |= {"moveaxis", "atleast_1d", "atleast_2d", "expand_dims", "split", "array_split", "broadcast_to", "flip"}
 _SAME |= {"diagonal", "copyto"}
 """Functions of numpy that may return another view of the same array, or write to it."""
+_CREATORS = {"create_timer", "create_subscription", "create_service"}
+"""Methods of nodes that take a callback."""
 _RCLPYS = {"ActionServer", "ActionClient", "TransformListener", "TransformBroadcaster", "StaticTransformBroadcaster"}
 """Classes that take the node, and use none of the attributes that its own class defines."""
 _SPINNING = {"spin", "spin_once", "spin_until_future_complete", "spin_once_until_future_complete"}
@@ -107,7 +108,9 @@ def use_of(method: str, node: ast.Attribute | ast.Name, parents: Sequence[ast.AS
     is_registered = registers(above)
     is_lent = isinstance(above, ast.Call) and not is_registered and last_name(above.func) in _CREATORS
     return Use(
-        *(method, node, kind),
+        method,
+        node,
+        kind,
         is_nested=nested,
         is_registered=is_registered,
         is_lent=is_lent,

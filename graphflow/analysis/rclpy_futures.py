@@ -14,9 +14,8 @@ BLOCKS = ast.Module | ast.FunctionDef | ast.AsyncFunctionDef | ast.If | ast.For 
 """Statements with a body."""
 _LOOKS = ("spin_until_future_complete", "spin_once_until_future_complete", "print")
 """Functions that read a future, and do not end it."""
-
-
 _ASKING = ("call_async", "send_goal_async")
+"""Methods of clients that return futures."""
 _WAITING = re.compile(r"spin|done|wait|sleep|join|event")
 """Words in the names of functions after which a future may have its result."""
 
@@ -90,18 +89,20 @@ def early_results(module: ast.AST) -> Iterator[tuple[int, str]]:
     for function in nodes_in(module):
         if not isinstance(function, ast.FunctionDef):
             continue
+        names = [last_name(part) for part in nodes_in(function) if isinstance(part, (ast.Attribute, ast.Name))]
+        if any(map(_WAITING.search, names)):
+            continue
+        parts = [part for part, _ in walk(function, into_functions=False)]
         made: dict[str, int] = {}
-        asked: list[tuple[int, str]] = []
-        is_open = True
-        for node in nodes_in(function):
-            match node:
+        for part in parts:
+            match part:
                 case ast.Assign(targets=[target], value=ast.Call(func=ast.Attribute(attr=verb))) if verb in _ASKING:
-                    made[dotted(target)] = node.lineno
-                case ast.Return(value=ast.Call(func=ast.Attribute(value=owner, attr="result"))):
-                    asked.append((node.lineno, dotted(owner)))
-                case ast.Attribute(attr=name) | ast.Name(id=name):
-                    is_open = is_open and not _WAITING.search(name)
-        for line, future in asked if is_open else ():
-            if future in made:
-                text = f"{future}.result() is None there, since nothing spins after line {made[future]}"
-                yield line, f"{text}; write before it: rclpy.spin_until_future_complete(node, {future})"
+                    made[dotted(target)] = part.lineno
+        for part in parts:
+            match part:
+                case ast.Return(value=ast.Call(func=ast.Attribute(value=owner, attr="result"))) if (
+                    dotted(owner) in made
+                ):
+                    future = dotted(owner)
+                    text = f"{future}.result() is None there, since nothing spins after line {made[future]}"
+                    yield part.lineno, f"{text}; write before it: rclpy.spin_until_future_complete(node, {future})"

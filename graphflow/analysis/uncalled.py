@@ -16,8 +16,8 @@ _METHODS = (
     *("set", "clear", "acquire", "release", "notify", "notify_all", "start", "join", "wait", "popleft", "task_done"),
 )
 """Methods of nodes, of their parts, and of events, locks, threads and queues that are called without arguments."""
-_SPINS = ("rclpy.spin", "rclpy.spin_once")
-"""Functions that take a node."""
+_FUNCTIONS = {"rclpy.init": "", "rclpy.spin": "node", "rclpy.spin_once": "node"}
+"""Functions of rclpy, with their argument."""
 _ALSO_VALUES = ("start", "stop")
 """Methods whose names slices and ranges have for values, which a script may look at."""
 _HANDLERS = {"subscription", "service", "timer", "action", "task"}
@@ -72,12 +72,10 @@ def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
     for node, parents in walk(code):
         match node:
             case ast.Expr(value=ast.Attribute(attr=name) as method):
-                function = _method(method, parents)
-                is_known = name in _METHODS and not (is_own(method) and name in own)
-                is_known |= ast.unparse(method) == "rclpy.init"
+                function, shown = _method(method, parents), ast.unparse(method)
+                is_known = shown in _FUNCTIONS or (name in _METHODS and not (is_own(method) and name in own))
                 is_known &= name not in _ALSO_VALUES or any(isinstance(parent, FunctionNode) for parent in parents)
                 if (is_known or function is not None) and not _is_tried(parents):
-                    shown = ast.unparse(method)
                     yield node.lineno, f"{shown} without parentheses calls nothing; {_call(method, function)}"
             case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test) | ast.Assert(test=test):
                 for method in _conditions(test):
@@ -100,7 +98,7 @@ def _call(method: ast.Attribute, function: FunctionNode | None) -> str:
     """Return the call that was meant, with the names of its arguments."""
     arguments = [argument.arg for argument in function.args.args[1:]] if function is not None else []
     shown = ast.unparse(method)
-    call = f"{shown}({', '.join(arguments)})" if shown not in _SPINS else f"{shown}(node)"
+    call = f"{shown}({_FUNCTIONS.get(shown, ', '.join(arguments))})"
     return f"write: await {call}" if isinstance(function, ast.AsyncFunctionDef) else f"write: {call}"
 
 

@@ -21,9 +21,10 @@ def words_in(module: ast.Module) -> set[str]:
 def methods_in(module: ast.Module) -> set[str]:
     """Return the words by which a module may refer to methods: attributes, strings, and names in bodies of classes."""
     found = set(_attributes_in(module))
-    for part in (part for cls in nodes_in(module) if isinstance(cls, ast.ClassDef) for part in cls.body):
-        for outside in part.decorator_list if isinstance(part, FunctionNode) else [part]:
-            found |= _names_in(outside)
+    for cls in (node for node in nodes_in(module) if isinstance(node, ast.ClassDef)):
+        for statement in cls.body:
+            for part in statement.decorator_list if isinstance(statement, FunctionNode) else [statement]:
+                found |= _names_in(part)
     return found
 
 

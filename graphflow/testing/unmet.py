@@ -35,7 +35,7 @@ def arrivals(graph: Graph) -> dict[tuple[str, str], int]:
     for node in graph.nodes:
         if node is not graph.tester and node.is_running:
             counts = [(end.name, end.statistics()) for end in node.endpoints if isinstance(end, TopicSubscription)]
-            found |= {(name, node.full_name): number["received"] - number["waiting"] for name, number in counts}
+            found |= {(name, node.full_name): count["received"] - count["waiting"] for name, count in counts}
     return found
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from abc import abstractmethod
 from asyncio import Future
 from collections import Counter, deque
 from collections.abc import Callable
 
+from graphflow.analysis.user_code import users_frame
 from graphflow.errors import ClosedError, DecodeError
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.machines.cache import GraphChange
@@ -231,10 +233,6 @@ def _nothing() -> None:
 
 def _how_to_run() -> str:
     """Say that a node does not run, and where its endpoints are used, from the code that uses one too early."""
-    import sys
-
-    from graphflow.analysis.user_code import users_frame
-
     caller = users_frame(sys._getframe())
     if caller is not None and caller.f_code.co_name == "__init__":
         return "does not run yet in __init__; do this in async def on_start(self), or in a handler"

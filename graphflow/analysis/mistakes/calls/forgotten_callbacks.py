@@ -13,7 +13,9 @@ from graphflow.analysis.words import methods_in, prefixes_in
 _OF_NODES = re.compile(r"__\w+__|destroy_\w+|on_(configure|activate|deactivate|cleanup|shutdown|error)")
 """Methods that rclpy calls by their names."""
 _LIKE_A_CALLBACK = re.compile(r"_*(on_\w+|handle_\w+|\w*(callback|_cb|_handler|listener)\w*|cb)")
+"""Names of methods that take a message."""
 _LIKE_A_TIMERS = re.compile(r"_*(\w*timer\w*|tick|\w+_(callback|cb))")
+"""Names of methods without arguments that a timer calls."""
 _MESSAGES = ("msg", "message")
 """Arguments that are messages."""
 

@@ -45,7 +45,7 @@ def idle_methods(
         if not isinstance(method, FunctionNode) or method.decorator_list or method.name in mentioned:
             continue
         if method.name.startswith(("__", *prefixes)) or any(method.name in vars(parent) for parent in cls.__mro__[1:]):
-            continue  # the parent calls it
+            continue  # the parent calls it, or `getattr` finds it
         way = _way(cls, method, space)
         if not way or any(method.name in methods_in(other) for other in other_modules(file, method.name)):
             continue
