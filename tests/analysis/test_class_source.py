@@ -347,6 +347,15 @@ def test_methods_that_others_may_call(written: Written, method: str) -> None:
         read(written, CALLS).above({method}, set())
 
 
+def test_a_method_that_is_lent_to_another_node(written: Written) -> None:
+    """That node may call a node's own method at any time; an object's is called back by the node that owns it."""
+    source = read(written, CALLS.replace("self.create_timer", "other.create_timer"))
+    lent = next(name for name in source.methods if any(use.is_lent for use in source.uses(name)))
+    with pytest.raises(Unknown):
+        source.above({lent}, {lent})
+    assert lent in source.above({lent}, {lent}, "owner")
+
+
 def test_a_method_that_another_object_has_too(written: Written) -> None:
     """A call of that name on anything but `self` may be a call of the node's."""
     source = read(written, CALLS + "def outside(n):\n    n.move()\n")

@@ -150,6 +150,21 @@ def test_wrong_usage(words: list[str], message: str, capsys: pytest.CaptureFixtu
     assert message in err
 
 
+def test_a_package_without_its_verb(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The forgotten `run` is told where the workspace has the executable."""
+    folder = tmp_path / "src" / "lamp"
+    (folder / "lamp").mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>lamp</name></package>")
+    (folder / "setup.py").write_text("setup(name='lamp', entry_points={'console_scripts': ['on = lamp.node:main']})")
+    monkeypatch.chdir(tmp_path)
+    assert ends("lamp", "on") == exits.USAGE
+    assert "did you mean: graphflow run lamp on" in capsys.readouterr().err
+    assert ends("lamp", "off") == exits.USAGE
+    assert "graphflow run" not in capsys.readouterr().err
+
+
 def test_no_verb_is_help_and_wrong_usage(capsys: pytest.CaptureFixture[str]) -> None:
     """`graphflow` alone shows what there is, and is not a success."""
     assert ends() == exits.USAGE

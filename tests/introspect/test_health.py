@@ -198,6 +198,7 @@ def test_where_nobody_speaks() -> None:
         entity_token("/goto", kind=CLIENT, name="/rotat/_action/send_goal"),
         entity_token("/sim", kind=SERVICE, name="/rotate/_action/send_goal"),
         entity_token("/goto", kind=CLIENT, name="/cook/_action/send_goal"),
+        entity_token("/goto", kind=SUB, name="/quiet"),
         entity_token("/mux", kind=SUB, name="/nav", type_="geometry_msgs/msg/Twist"),
         entity_token("/mux", kind=PUB, name="/out", type_="geometry_msgs/msg/Twist"),
         entity_token("/key", kind=PUB, name="/stick", type_="geometry_msgs/msg/Twist"),
@@ -210,6 +211,7 @@ def test_where_nobody_speaks() -> None:
     ]
     assert told.hints == [
         "/mux subscribes to /nav, which no node publishes; available with that type: /stick",
+        "/goto subscribes to /quiet, which no node publishes",
         "/too and /two subscribe to /scan2, which no node publishes; available with that type: /scan1",
         "/sim subscribes to /turtle1/cmd_vel, which no node publishes",
         "/goto sends goals to /cook, which no node offers",

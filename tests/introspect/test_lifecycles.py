@@ -73,6 +73,8 @@ async def test_nodes_that_are_not_active(graph: Graph, number: int, told: str) -
     view.cache = node.context.cache
     assert idle(view, 1.0).hints == ([f"/lived is {told}"] if told else [])
     assert idle(view, 1.0).unknown == (["/lived"] if number == 99 else [])
+    assert idle(view, 1.0, {"/lived"}) == idle(view, 1.0)
+    assert idle(view, 1.0, {"/other"}) == ([], [])
 
 
 @slow

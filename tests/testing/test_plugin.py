@@ -203,6 +203,23 @@ def test_a_limit_of_its_own(pytester: pytest.Pytester, monkeypatch: pytest.Monke
     result.stdout.fnmatch_lines(["*was not done after*mark it with @pytest.mark.timeout(*)*"])
 
 
+def test_a_test_that_inspects_too_early(pytester: pytest.Pytester) -> None:
+    """What came right after it is told."""
+    result = run(
+        pytester,
+        """
+        from graphflow.msgs.std_msgs.msg import String
+
+        async def test_it(graph):
+            heard = graph.tap(String, "/out")
+            graph.publisher(String, "/out").publish(String())
+            assert len(heard) == 1
+        """,
+    )
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*1 message of /out arrived after the test had ended: await graph.settle() before*"])
+
+
 @slow
 def test_a_test_that_waits_for_a_service(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     """Which no node has, is ended with its name."""

@@ -362,6 +362,9 @@ def test_a_package_whose_setup_py_names_no_executable(tmp_path: Path) -> None:
     )
     line = f"{folder / 'setup.py'} names no executable: add 'node = lamp.node:main' to its console_scripts"
     assert find_workspace(tmp_path / "ws").packages["lamp"].why_no_executable == f"; {line}"
+    (folder / "setup.py").write_text("setup(name='lamp', entry_points={'console_scripts': names()})")
+    assert find_workspace(tmp_path / "ws").packages["lamp"].why_no_executable == ""
+    (folder / "setup.py").write_text("setup(name='lamp')")
     (folder / "lamp" / "node.py").write_text("class Lamp: ...\n")
     assert find_workspace(tmp_path / "ws").packages["lamp"].why_no_executable == ""
 

@@ -30,6 +30,7 @@ def main():
         ("add(self, request, response)", "return response", "self.create_service(Type, 'name', self.add)"),
         ("execute(self, goal_handle)", "goal_handle.succeed()", "ActionServer(self, Type, 'name', self.execute)"),
         ("done(self, future)", "print(future.result())", "future.add_done_callback(self.done)"),
+        ("show(self, feedback)", "...", "feedback_callback=self.show in send_goal_async(...)"),
         ("feedback_callback(self, msg)", "...", "feedback_callback=self.feedback_callback in send_goal_async(...)"),
     ],
 )

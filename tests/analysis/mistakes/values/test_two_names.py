@@ -37,6 +37,7 @@ def test_one_is_set_and_the_other_is_read() -> None:
         ("None", "self.pos = message", "pass"),
         ("None", "self.goal = message", READS),
         ("Pose()", "self.pos = message", READS),
+        ("None; self.pos = None", "self.pos = message", READS),
     ],
 )
 def test_attributes_that_may_be_meant(first: str, sets: str, reads: str) -> None:
