@@ -57,6 +57,8 @@ _FRAGILE = (logging.__file__, unawaited.__file__)
 _MANAGER = "_ExecutorManagerThread"
 """The class of the thread that keeps the interpreter alive until a `ProcessPoolExecutor` has finished."""
 _POOL = "the work of a process pool"
+_ZENOH = "(pyo3-closure)"
+"""The end of the names of Zenoh's threads, which call a program's handlers and end with the session."""
 _INPUT = re.compile(r"(?<![\w.])input\s*\(|\bstdin\b")
 """Pattern of an expression that reads the terminal."""
 
@@ -331,7 +333,7 @@ def hindrances() -> Iterator[str]:
             yield f"{_POOL}, processes {workers}"
             continue
         place = next(place_of(thread.ident), "")
-        if place or thread is not threading.main_thread():
+        if place or not (thread is threading.main_thread() or thread.name.endswith(_ZENOH)):
             yield f"{place or 'code outside this program'}, thread {thread.name!r}"
 
 

@@ -308,6 +308,19 @@ def test_a_thread_that_works_is_named() -> None:
     assert [text.partition(" in ")[2] for text in told] == ["works, thread 'smith'"]
 
 
+def test_a_thread_of_zenoh_is_not_named() -> None:
+    """It ends with the session; one of another library, which nothing ends, is."""
+    gate = threading.Event()
+    threads = [threading.Thread(target=gate.wait, name=f"Thread-7 ({name})") for name in ("pyo3-closure", "works")]
+    for thread in threads:
+        thread.start()
+    told = [text for text in hindrances() if "Thread-7" in text]
+    gate.set()
+    for thread in threads:
+        thread.join()
+    assert told == ["code outside this program, thread 'Thread-7 (works)'"]
+
+
 def wait_for(gate: Path) -> None:
     """Work for another process, until there is a file."""
     while not gate.exists():

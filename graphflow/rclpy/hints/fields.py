@@ -99,10 +99,23 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
         return f"the fraction has a field of its own: write sec={int(value)}, nanosec={nanoseconds:_}"
     if kind == "int" and isinstance(value, float):
         return f"{target} is an int: write int(...){' or //' if '/' in given else ''}"
+    if kind in ("int", "float") and isinstance(value, str) and not _can_be(kind, value):
+        return f"{target} is {'an int' if kind == 'int' else 'a float'}, and {reprlib.repr(value)} is no number"
     is_made = kind == "str" or (kind in ("int", "float") and isinstance(value, str))
     if is_made and value is not None:
         return f"write {target} = {kind}({given})"
     return f"it was given {reprlib.repr(value)}: write True or False" if kind == "bool" else ""
+
+
+def _can_be(kind: str, value: object) -> bool:
+    """Whether `int(value)` or `float(value)` gives a number; every other kind is taken to accept the value."""
+    if kind not in ("int", "float") or not isinstance(value, str):
+        return True
+    try:
+        (int if kind == "int" else float)(value)
+    except ValueError:
+        return False
+    return True
 
 
 def _of_array(target: str, given: str, kind: str, shape: tuple[int, ...]) -> str:
@@ -127,7 +140,8 @@ def _wrong_element(checks: list[dict[str, Any]], text: str) -> str:
             return f"the array has {dimensions + 1} dimensions, and the field one: write array.{flat}"
         if kind is not None and type(last["item"]).__name__ == kind[1]:
             return f"one of its elements is {reprlib.repr(last['item'])}, which is out of range"
-        way = f": write [{kind[1]}(v) for v in ...]" if kind is not None and isinstance(last["item"], _PLAIN) else ""
+        is_made = kind is not None and isinstance(last["item"], _PLAIN) and _can_be(kind[1], last["item"])
+        way = f": write [{kind[1]}(v) for v in ...]" if kind is not None and is_made else ""
         return f"one of its elements is {reprlib.repr(last['item'])}{way}"
     value = last["value"]
     way = f": a list is expected, write [{value!r}]" if kind is not None and type(value).__name__ == kind[1] else ""

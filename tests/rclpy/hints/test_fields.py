@@ -41,6 +41,8 @@ ONE = "dimensions, and the field one: write "
         ("t.linear.x = 2", "t.linear.x is a float: write 2.0"),
         ("t.linear.x = n", "write t.linear.x = float(n)"),
         ("t.linear.x = '2'", "write t.linear.x = float('2')"),
+        ("t.linear.x = 'fast'", "t.linear.x is a float, and 'fast' is no number"),
+        ("m.data = 'two'", "m.data is an int, and 'two' is no number"),
         ("t.linear.x = None", ""),
         (
             "t.linear.x = 5.0 * zeros(1)",
@@ -70,7 +72,8 @@ ONE = "dimensions, and the field one: write "
         ("m.data = 1 << 40", "it was given 1099511627776"),
         ("b.data = 'yes'", "it was given 'yes': write True or False"),
         ("j.name = ['a', 2]", "one of its elements is 2: write [str(v) for v in ...]"),
-        ("j.position = [1.0, 'b']", "one of its elements is 'b': write [float(v) for v in ...]"),
+        ("j.position = [1.0, 'b']", "one of its elements is 'b'"),
+        ("j.position = [1.0, '2']", "one of its elements is '2': write [float(v) for v in ...]"),
         ("j.name = 'ab'", "it was given 'ab'"),
         ("j.position = 3.0", "it was given 3.0: a list is expected, write [3.0]"),
         ("t.linear.theta = 1.0", "Vector3 has x, y, z"),
