@@ -30,6 +30,7 @@ IDLE_LIMIT = 5.0
 """Longest idle time of a test with a manual clock, in seconds of real time."""
 IDLE = 0.02
 """Processor time in seconds, per second of real time, below which a test counts as idle."""
+_ASYNC_DEF = "; write async def instead of def"
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -75,8 +76,12 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
     if inspect.iscoroutinefunction(item.obj):
         item.obj = _limited(item, item.obj)
         return (yield)
-    result = yield
-    _raise_forgotten("; write async def instead of def")
+    try:
+        result = yield
+    except (Exception, pytest.fail.Exception):  # any failure of the test, reported and raised
+        _report([f"{text}{_ASYNC_DEF}" for text in _forgotten()], item)
+        raise
+    _raise_forgotten(_ASYNC_DEF)
     return result
 
 
@@ -186,10 +191,19 @@ def _limit(item: pytest.Function) -> float:
 
 def _raise_forgotten(way: str = "") -> None:
     """Fail a test that has not awaited a call of its graph."""
+    if found := _forgotten():
+        raise RuntimeError(f"{found[0]}{way}")
+
+
+def _forgotten() -> list[str]:
     from graphflow.testing.forgotten import forgotten
 
-    if found := forgotten():
-        raise RuntimeError(f"{found[0]}{way}")
+    return forgotten()
+
+
+def _report(lines: list[str], item: pytest.Item) -> None:
+    if lines:
+        item.add_report_section("call", "graphflow", "\n".join(lines))
 
 
 def _is_of_a_line(error: BaseException) -> bool:
@@ -201,18 +215,16 @@ def _is_of_a_line(error: BaseException) -> bool:
 
 async def _report_unmet(item: pytest.Function, graph: Graph) -> None:
     """Add the unmet waits to the report of a failing test."""
-    from graphflow.testing.forgotten import forgotten
     from graphflow.testing.unmet import arrivals, unmet
 
     before = arrivals(graph)
     await asyncio.sleep(0)  # lets new tasks start
-    found = forgotten()
+    found = _forgotten()
     try:
         found += await unmet(graph, before)
     except RuntimeError as error:  # the graph does not settle
         found.append(str(error))
-    if found:
-        item.add_report_section("call", "graphflow", "\n".join(found))
+    _report(found, item)
 
 
 def _warn_of_misspelt_taps(item: pytest.Function, graph: Graph) -> None:

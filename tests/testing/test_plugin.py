@@ -143,10 +143,17 @@ def test_tests_that_would_pass_in_vain(pytester: pytest.Pytester) -> None:
             heard = graph.tap(String, "out")
             assert repr(heard) == "<Tap /out []>"
             graph.advance(1.0)
+
+        def test_def(graph):
+            graph.start(Counter())
+            assert graph.nodes
+
+        async def test_next(graph):
+            assert graph.nodes
         """,
     )
 
-    result.assert_outcomes(failed=5)
+    result.assert_outcomes(failed=7)
     result.stdout.fnmatch_lines(
         [
             "*assert *'1' == '2'*",
@@ -154,8 +161,12 @@ def test_tests_that_would_pass_in_vain(pytester: pytest.Pytester) -> None:
             "*test_it.py:18: this * write await graph.start(Counter()); write async def instead of def*",
             "*call it: await settle()*",
             "*'Graph' object has no attribute 'advance'; write await graph.clock.advance(1.0)*",
+            "*_ test_def _*",
+            "*test_it.py:29: this * write await graph.start(Counter()); write async def instead of def*",
+            "*_ test_next _*",
         ]
     )
+    assert result.stdout.str().count("has no effect until it is awaited") == 3
 
 
 def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
