@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import linecache
 import re
+from asyncio import InvalidStateError
 from typing import NamedTuple
 
 from graphflow.analysis.hiding import hidden
@@ -51,6 +52,11 @@ REMARKS = (
     ),
     Remark(
         r'can only concatenate str \(not "(int|float|bool)"\)', "", "convert it with str(value), or use an f-string"
+    ),
+    Remark(
+        "^Result is not (set|ready)",
+        r"(?P<name>\b[\w.]+)\.result\(",
+        "{name} is still at work: write await {name}, which returns its result",
     ),
     Remark(r"\b(method|function)\b.* '?await", _AWAITED, "call it: await {name}()"),
     Remark(
@@ -215,7 +221,7 @@ REMARKS = (
     ),
 )
 _CALL = re.compile(r"(?:(?P<owner>\w+)\.)?(?P<name>\w+)\(\) (got an unexpected|missing \d|takes )")
-_CLASSES = (TypeError, AttributeError, NameError, UnboundLocalError, RuntimeError, ValueError)
+_CLASSES = (TypeError, AttributeError, NameError, UnboundLocalError, RuntimeError, ValueError, InvalidStateError)
 _OURS = ("ServiceClient", "GoalClient", "TopicPublisher")
 
 

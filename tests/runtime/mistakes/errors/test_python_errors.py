@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import linecache
 import re
+from asyncio import InvalidStateError
 from typing import Any
 
 import pytest
@@ -17,7 +18,7 @@ NODE: Any = Node("n")
 
 
 def caught(use: Any) -> BaseException:
-    with pytest.raises((TypeError, AttributeError, RuntimeError, ValueError, KeyError)) as error:
+    with pytest.raises((TypeError, AttributeError, RuntimeError, ValueError, KeyError, InvalidStateError)) as error:
         use()
     return error.value
 
@@ -67,6 +68,19 @@ def remark_at(monkeypatch: pytest.MonkeyPatch, text: str, line: str) -> str:
 def test_transforms_from_numbers(monkeypatch: pytest.MonkeyPatch, text: str, told: str) -> None:
     """They are made by `Transform.of`."""
     assert told in remark_at(monkeypatch, text, "")
+
+
+def test_a_result_before_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a future, and of a task, whose error has another text."""
+    monkeypatch.setattr(linecache, "getline", lambda *_: "total = self.sent.result().sum")
+
+    async def ask() -> list[str]:
+        task = asyncio.ensure_future(asyncio.sleep(0.0))
+        told = [remark_on(caught(waits.result)) for waits in (task.get_loop().create_future(), task)]
+        await task
+        return told
+
+    assert asyncio.run(ask()) == ["self.sent is still at work: write await self.sent, which returns its result"] * 2
 
 
 def test_a_task_before_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
