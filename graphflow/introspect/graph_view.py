@@ -281,7 +281,7 @@ class View:
         if still and self._is_linked():
             why = "the net profile of its machine does not pass the call: add it to `allow` on both"
             return f"{name} is announced, and does not answer: {why}"
-        return f"{name}: the server went away before it answered{self._stopped()}"
+        return f"{name}: the server went away before it answered{self._stopped() or '; its terminal may say why'}"
 
     def _stopped(self) -> str:
         """Describe stopped processes (SIGSTOP), which the router has forgotten by now, to append to an error."""

@@ -151,7 +151,7 @@ def test_a_call(view: View, client: Client) -> None:
     [
         (TimeoutError(), CallTimeout, f"{ADD} did not answer within 1.5 s"),
         (Answer(b'{"type": "ValueError", "message": "no"}', None, True), RemoteError, "raised ValueError: no"),
-        (None, ServerLost, "the server went away before it answered"),
+        (None, ServerLost, "the server went away before it answered; its terminal may say why"),
     ],
 )
 def test_a_call_that_fails(

@@ -186,13 +186,21 @@ def _described(path: str, tree: ast.Module) -> list[Any]:
         raise NameError(f"it has no function {_FUNCTION}(){where}")
     description = space[_FUNCTION]()
     if not isinstance(description, RecordedCall):
-        what, hint = repr(description), ""
-        if isinstance(description, (list, tuple)):
-            what, hint = "a list", "; write LaunchDescription(...) around it"
-        elif description is None:
-            hint = "; a return is missing"
-        raise TypeError(f"{_FUNCTION}() returned {what}, and not a LaunchDescription{hint}")
+        raise _no_description(description, tree)
     return [description]
+
+
+def _no_description(returned: object, tree: ast.Module) -> TypeError:
+    """Return the error for a function that returns anything else, with the line of its last statement."""
+    what, hint = repr(returned), ""
+    if isinstance(returned, (list, tuple)):
+        what, hint = "a list", "; write LaunchDescription(...) around it"
+    elif returned is None:
+        hint = "; a return is missing"
+    error = TypeError(f"{_FUNCTION}() returned {what}, and not a LaunchDescription{hint}")
+    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == _FUNCTION]
+    error.lineno = functions[-1].body[-1].lineno if functions else 1  # type: ignore[attr-defined]
+    return error
 
 
 def _last(expression: ast.Name | ast.Attribute) -> str:

@@ -197,17 +197,17 @@ def test_other_ways_of_saying_it(tmp_path: Path) -> None:
         ("def generate_launch_description():\n    open('/nowhere/x')\n", 2, "FileNotFoundError: [Errno 2]"),
         (
             "def generate_launch_description():\n    return 3\n",
-            1,
+            2,
             "TypeError: generate_launch_description() returned 3",
         ),
         (
             "def generate_launch_description():\n    return []\n",
-            1,
+            2,
             "TypeError: generate_launch_description() returned a list, and not a LaunchDescription; write Launch",
         ),
         (
             "def generate_launch_description():\n    3\n",
-            1,
+            2,
             "TypeError: generate_launch_description() returned None, and",
         ),
         (

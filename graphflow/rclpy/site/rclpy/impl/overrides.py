@@ -19,6 +19,7 @@ _SINGLE = {
 """The types of the elements of arrays."""
 _PYTHON = {Kind.BOOL: "bool", Kind.INTEGER: "int", Kind.DOUBLE: "float", Kind.STRING: "str"}
 _TRUE_PYTHON = {"true": "True", "false": "False"}
+_NEEDED = {Kind.BOOL: "true or false", Kind.INTEGER: "an integer, such as 2", Kind.DOUBLE: "a number, such as 2.0"}
 _FOLLOWING = 20
 """Lines after the first one of a node in which a launch file may set its parameters."""
 _TRUTHS = {"1": "true", "true": "true", "0": "false", "false": "false"}
@@ -50,6 +51,8 @@ def remark(name: str, value: Any, source: str, kind: Parameter.Type) -> str:
             way = f'-p "{name}:={written}"'
     else:
         where, way = f"in {Path(source).name}", _in_file(name, written, source, kind)
+    if not written and kind in _NEEDED:
+        return f"{name} is set {where}: it needs {_NEEDED[kind]}"
     return f"{name} is set {where}" + (f": write {way}" if written and way else "")
 
 
