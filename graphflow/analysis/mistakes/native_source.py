@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
 from graphflow.analysis.mistakes.calls.background_work import background_work
@@ -28,12 +28,12 @@ _IN_CLASSES: Final[tuple[Callable[[ast.ClassDef], Found], ...]] = (
 """Checks of native nodes alone."""
 
 
-def slips(definition: ast.ClassDef, module: ast.Module, subscribed: Collection[str]) -> Iterator[tuple[int, str]]:
+def slips(definition: ast.ClassDef, module: ast.Module, subscribed: Mapping[str, str]) -> Iterator[tuple[int, str]]:
     """Yield the lines of a class that Python runs without an error and without effect, each with a sentence.
 
     Args:
         module: The file with the definition.
-        subscribed: The methods of the class that receive messages.
+        subscribed: The methods of the class that receive messages, each with the name of the type.
     """
     for check in (*IN_CODE, *_IN_CLASSES):
         yield from check(definition)

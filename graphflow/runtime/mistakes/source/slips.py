@@ -91,7 +91,8 @@ def _slips(cls: type) -> Iterator[str]:
                 yield from wrong_fields(method, handler, file, space, kept)
                 yield from whole_messages(flags, method, handler, file, space)
         module = syntax_of(file).module
-        subscribed = [name for name, handler in declared.handlers(parent).items() if handler.kind == "subscription"]
+        handlers = declared.handlers(parent).items()
+        subscribed = {name: handler.type.__name__ for name, handler in handlers if handler.kind == "subscription"}
         found = [
             *native_source.slips(definition, module, subscribed),
             *overridden(parent, definition),
