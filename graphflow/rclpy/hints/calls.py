@@ -47,6 +47,8 @@ def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
         return ""
     name = miscalled[1]
     if _is_users_own(name, last):
+        if "." in name and " takes 0 positional arguments " in str(error):
+            return f"self is missing: write def {name.rpartition('.')[2]}(self):"
         return _called_at_once(name, line_of(frames)) if " missing " in str(error) else ""
     unmade = _not_constructed(name, last) if "missing 1 required positional argument" in str(error) else ""
     return unmade or _of_message(name, last) or _of_rclpy(name, str(error), (), {})

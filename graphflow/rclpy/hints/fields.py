@@ -186,6 +186,8 @@ def message_as_value(error: BaseException, frames: list[FrameType]) -> str:
         return _class_as_message(line_of(frames), users[-1])
     if not isinstance(error, TypeError) or not _RECKONED.search(str(error)):
         return ""
+    if "'ParameterValue'" in str(error) and ".get_parameter_value()" in line_of(frames):
+        return "a parameter's value is in .value: write that in place of .get_parameter_value()"
     for path in PATH.findall(line_of(frames)):
         thing = named(path, users[-1])
         name = type(thing).__name__

@@ -43,6 +43,8 @@ def _where(name: str, module: str) -> str:
         near = nearest(name, registry.names_in(package, kind))
         return f"did you mean {near!r}?" if near is not None else ""
     if package in registry.packages():
+        if name in KINDS and not kind:
+            return f"write import {module}.{name}"
         kinds = [kind for kind in KINDS if name in registry.names_in(package, kind)]
         return f"{name} is in {package}.{kinds[0]}: from {package}.{kinds[0]} import {name}" if kinds else ""
     return _in_rclpy(name, module) if package == "rclpy" else ""

@@ -26,6 +26,15 @@ from rclpy.qos import QoSProfile
 from tests.cases import slow
 from tests.rclpy.hinted import hint_of
 
+
+class Selfless:
+    """Is written without `self`."""
+
+    def __init__() -> None:  # type: ignore[misc]
+        """Fail."""
+
+
+SELFLESS: Any = Selfless
 SUPER: Any = super
 LISTENER: Any = TransformListener
 EXECUTOR: Any = SingleThreadedExecutor(context=Context())
@@ -43,6 +52,7 @@ MISTAKES: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: SUPER.__init__("node"), "super is called: write super().__init__('node_name')"),
     (lambda n: rclpy.task.Future().add_done_callback(n.tick()), "without parentheses: n.tick"),
     (lambda n: n.tick(), ""),
+    (lambda n: SELFLESS(), "self is missing: write def __init__(self):"),
     (lambda n: EXECUTOR.spin(n), "executor.add_node(node), and then executor.spin()"),
 ]
 

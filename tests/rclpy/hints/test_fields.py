@@ -79,6 +79,7 @@ ONE = "dimensions, and the field one: write "
         ("t.linear.theta = 1.0", "Vector3 has x, y, z"),
         ("'heard ' + b", "b is a Bool, a message: take its field, b.data"),
         ("2 * value", "value is a ParameterValue: write get_parameter('name').value in place of"),
+        ("2 * param.get_parameter_value()", "a parameter's value is in .value: write that in place of"),
         ("2 * None", ""),
         ("Int32(data=1.5)", "data is an int: write int(...)"),
         ("Twist(linear=1.5)", "linear is a Vector3: set its fields, as in linear.x = ..."),

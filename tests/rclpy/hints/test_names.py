@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -117,11 +118,14 @@ def test_names_in_a_class(node: Node, tmp_path: Path, body: str, sentence: str) 
         ("std_msgs.String", "String is in std_msgs.msg: from std_msgs.msg import String"),
         ("std_msgs.Strung", ""),
         ("os.nonsense", ""),
+        ("geometry_msgs.msg.Twist", "write import geometry_msgs.msg"),
+        ("geometry_msgs.message", ""),
     ],
 )
 def test_attributes_of_modules(node: Node, line: str, sentence: str) -> None:
     """Names of ROS 1's, and of interfaces, are found."""
-    assert hint_of(lambda: eval(line, {"rclpy": rclpy, "std_msgs": std_msgs, "os": os})) == sentence
+    known = {"rclpy": rclpy, "std_msgs": std_msgs, "os": os, "geometry_msgs": ModuleType("geometry_msgs")}
+    assert hint_of(lambda: eval(line, known)) == sentence
 
 
 def test_an_init_that_is_none(node: Node, tmp_path: Path) -> None:
