@@ -21,6 +21,7 @@ from graphflow.analysis.mistakes.units.wrong_scale import wrong_scale
 from graphflow.analysis.mistakes.values.conditions import constant_conditions
 from graphflow.analysis.mistakes.values.contrary_bounds import contrary_bounds
 from graphflow.analysis.mistakes.values.ineffective import ineffective
+from graphflow.analysis.mistakes.values.lasting_counters import lasting_counters
 from graphflow.analysis.mistakes.values.lost_values import lost_values
 from graphflow.analysis.mistakes.values.never_exact import never_exact
 from graphflow.analysis.mistakes.values.reused_objects import reused_objects
@@ -49,6 +50,7 @@ IN_FILES: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     mixed_angles,
     constant_conditions,
     contrary_bounds,
+    lasting_counters,
     lost_values,
     never_exact,
     contrary_names,

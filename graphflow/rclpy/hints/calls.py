@@ -47,9 +47,7 @@ def wrong_call(error: BaseException, frames: list[FrameType]) -> str:
         return ""
     name = miscalled[1]
     if _is_users_own(name, last):
-        if "." in name and " takes 0 positional arguments " in str(error):
-            return f"self is missing: write def {name.rpartition('.')[2]}(self):"
-        return _called_at_once(name, line_of(frames)) if " missing " in str(error) else ""
+        return _of_users(name, str(error), line_of(frames))
     unmade = _not_constructed(name, last) if "missing 1 required positional argument" in str(error) else ""
     return unmade or _of_message(name, last) or _of_rclpy(name, str(error), (), {})
 
@@ -81,6 +79,13 @@ _METHODS = {
 """Methods that are meant where an object of rclpy is called itself, by class."""
 _VALUES = ("value", "is_cancel_requested", "is_active", "request", "status", "nanoseconds", "goal_id")
 """Properties of rclpy that are often called like methods."""
+
+
+def _of_users(name: str, text: str, line: str) -> str:
+    """Show how to define a function of the program, or that it is called too early."""
+    if "." in name and " takes 0 positional arguments " in text:
+        return f"self is missing: write def {name.rpartition('.')[2]}(self):"
+    return _called_at_once(name, line) if " missing " in text else ""
 
 
 def _called_at_once(name: str, line: str) -> str:

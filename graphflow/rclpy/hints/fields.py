@@ -90,21 +90,29 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
         return _part(target, given, value, cls)
     if isinstance(value, StrictMessage) and hasattr(value, "data"):
         return f"{given} is a message: write {target} = {given}.data"
-    if kind in ("float", "int") and isinstance(shape := getattr(value, "shape", None), tuple):
+    if kind in ("int", "float"):
+        return _of_number(target, given, value, kind)
+    if kind == "str" and value is not None:
+        return f"write {target} = str({given})"
+    return f"it was given {reprlib.repr(value)}: write True or False" if kind == "bool" else ""
+
+
+def _of_number(target: str, given: str, value: object, kind: str) -> str:
+    """Show how to set a field that is a number."""
+    if isinstance(shape := getattr(value, "shape", None), tuple):
         return _of_array(target, given, kind, shape)
     if kind == "float" and isinstance(value, int):
         return f"{target} is a float: write {value}.0" if given == str(value) else f"write {target} = float({given})"
-    if kind == "int" and isinstance(value, float) and name == "sec":
-        nanoseconds = round(value % 1 * 1e9)
-        return f"the fraction has a field of its own: write sec={int(value)}, nanosec={nanoseconds:_}"
-    if kind == "int" and isinstance(value, float):
+    if isinstance(value, float):
+        if target.rpartition(".")[2] == "sec":
+            nanoseconds = round(value % 1 * 1e9)
+            return f"the fraction has a field of its own: write sec={int(value)}, nanosec={nanoseconds:_}"
         return f"{target} is an int: write int(...){' or //' if '/' in given else ''}"
-    if kind in ("int", "float") and isinstance(value, str) and not _can_be(kind, value):
+    if not isinstance(value, str):
+        return ""
+    if not _can_be(kind, value):
         return f"{target} is {'an int' if kind == 'int' else 'a float'}, and {reprlib.repr(value)} is no number"
-    is_made = kind == "str" or (kind in ("int", "float") and isinstance(value, str))
-    if is_made and value is not None:
-        return f"write {target} = {kind}({given})"
-    return f"it was given {reprlib.repr(value)}: write True or False" if kind == "bool" else ""
+    return f"write {target} = {kind}({given})"
 
 
 def _can_be(kind: str, value: object) -> bool:
