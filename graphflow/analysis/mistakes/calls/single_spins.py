@@ -1,30 +1,51 @@
-"""Programs that call `rclpy.spin_once(node)` once, and end, although their nodes have timers."""
+"""Programs that call `rclpy.spin_once(node)` once, and end, although their nodes have more to do."""
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from graphflow.analysis.syntax import LOOPS, FunctionNode, last_name, walk
+from graphflow.analysis.syntax import LOOPS, FunctionNode, last_name, nodes_in, walk
 
 _SPINS = ("spin", "spin_once", "spin_until_future_complete", "spin_some")
+_ENDS = ("destroy_node", "shutdown", "try_shutdown")
 
 
 def single_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
     """Find the only spin of a file if it is a `spin_once` outside of loops; it comes with a sentence.
 
-    Files without timers are left alone: a program may want one message and end. So are functions other than `main`.
+    A file without timers is left alone if anything but the end comes after it: the program may want one message. So
+    are functions other than `main`.
     """
     calls = [(node, parents) for node, parents in walk(module) if isinstance(node, ast.Call)]
-    names = [last_name(call.func) for call, _ in calls]
+    names = {last_name(call.func) for call, _ in calls}
     spins = [(call, parents) for call, parents in calls if last_name(call.func) in _SPINS]
-    if len(spins) != 1 or "create_timer" not in names:
+    if len(spins) != 1:
         return
     [(call, parents)] = spins
-    inside = [parent.name for parent in parents if isinstance(parent, FunctionNode)]
-    if last_name(call.func) != "spin_once" or inside not in ([], ["main"]):
+    functions = [parent for parent in parents if isinstance(parent, FunctionNode)]
+    is_helper = [function.name for function in functions] not in ([], ["main"])
+    if last_name(call.func) != "spin_once" or is_helper or any(isinstance(parent, LOOPS) for parent in parents):
         return
-    if not any(isinstance(parent, LOOPS) for parent in parents):
+    what = ""
+    if "create_timer" in names:
+        what = "no timer runs after it"
+    elif not names.isdisjoint(("create_subscription", "create_service")) and _is_last(call, functions):
+        what = "the program ends after it"
+    if what:
         shown = ast.unparse(call.args[0]) if call.args else "node"
-        text = f"{ast.unparse(call.func)} calls one callback and returns, and no timer runs after it"
+        text = f"{ast.unparse(call.func)} calls one callback and returns, and {what}"
         yield call.lineno, f"{text}; to run until Ctrl-C write rclpy.spin({shown})"
+
+
+def _is_last(call: ast.Call, functions: Sequence[ast.AST]) -> bool:
+    """Whether only the end of nodes and of rclpy follows a call in its function."""
+    if not functions:
+        return False
+    later = [node for node in nodes_in(functions[-1]) if isinstance(node, ast.stmt) and node.lineno > call.lineno]
+    return all(
+        isinstance(statement, ast.Expr)
+        and isinstance(statement.value, ast.Call)
+        and last_name(statement.value.func) in _ENDS
+        for statement in later
+    )

@@ -33,6 +33,17 @@ def test_the_only_spin() -> None:
     assert text.endswith("write rclpy.spin(Talker())")
 
 
+@pytest.mark.parametrize("made", ["subscription(Int32, 'a', self.heard, 10)", "service(Trigger, 'go', self.go)"])
+@pytest.mark.parametrize("after", ["", "node.destroy_node()\n    rclpy.shutdown()"])
+def test_a_listener_that_ends(made: str, after: str) -> None:
+    """One message, or one request, is seldom what is meant."""
+    [(line, text)] = _found(f"rclpy.spin_once(node)\n    {after}", made)
+    assert line == 7
+    assert text.startswith(
+        "rclpy.spin_once calls one callback and returns, and the program ends after it; to run until"
+    )
+
+
 def test_a_spin_outside_functions() -> None:
     """It is the program's, as one in `main` is."""
     [(line, _)] = _found("pass", more="rclpy.spin_once(node)")
@@ -47,7 +58,9 @@ def test_a_spin_outside_functions() -> None:
         ("[rclpy.spin_once(node) for _ in range(9)]", _TIMER, "main()"),
         ("rclpy.spin(node)", _TIMER, "main()"),
         ("rclpy.spin_until_future_complete(node, future)", _TIMER, "main()"),
-        ("rclpy.spin_once(node)", "subscription(Int32, 'a', self.heard, 10)", "main()"),
+        ("rclpy.spin_once(node)\n    print(node.heard)", "subscription(Int32, 'a', self.heard, 10)", "main()"),
+        ("rclpy.spin_once(node)", "client(Trigger, 'go')", "main()"),
+        ("pass", "subscription(Int32, 'a', self.heard, 10)", "rclpy.spin_once(node)"),
         ("rclpy.spin_once(node)", _TIMER, "rclpy.spin(node)"),
         ("rclpy.spin_once(node)", _TIMER, "rclpy.spin_until_future_complete(node, future)"),
         ("pass", _TIMER, "def step(): rclpy.spin_once(node)"),

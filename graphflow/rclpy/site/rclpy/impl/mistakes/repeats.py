@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 MANY = 10
 """The number of live entities of one kind, name and line that is reported."""
+MANY_SUBSCRIPTIONS = 3
+"""The same for subscriptions with one callback, which handles every message as often."""
 MANY_APART = 50
 """The same for timers whose callbacks have values of their own."""
 _KINDS = {
@@ -58,13 +60,14 @@ def count(node: Node, call: str, made: Any) -> None:
     if call in ("create_subscription", "create_service", "create_timer"):
         warn_of_hiding(node, made, asked.frame.f_code, _with_callbacks(node))
     alike = [other for other in getattr(internals_of(node), kind) if other.made_at == origin and _is_alive(other)]
-    if len(alike) >= MANY and place not in _reported:
+    is_often = call == "create_subscription" and _is_heard_often(made, alike)
+    if (len(alike) >= MANY or is_often) and place not in _reported:
         if len(alike) < MANY_APART and kind == "timers" and len(set(map(_bound, alike))) == len(alike):
             return  # each is for something else, such as one turtle of several
         _reported.add(place)
-        what = f"{kind}{_of(made)}"
-        text = "%s has %d %s created in %s: create one in __init__, and keep it in an attribute"
-        logger.warning(text, node.get_fully_qualified_name(), len(alike), what, place)
+        name, what = node.get_fully_qualified_name(), f"{kind}{_of(made)}"
+        way = f"create one in __init__, and keep it in an attribute{_for_delay(made)}"
+        logger.warning("%s has %d %s created in %s: %s", name, len(alike), what, place, way)
 
 
 def _with_callbacks(node: Node) -> list[Timer | Subscription | Service]:
@@ -117,6 +120,15 @@ def _of(made: Any) -> str:
     if isinstance(made, Timer):
         return f" of {name}" if (name := getattr(made.callback, "__name__", "")) else ""
     return f" of {_topic(made)}"
+
+
+def _is_heard_often(made: Subscription, alike: list[Subscription]) -> bool:
+    return sum(other.callback == made.callback for other in alike) >= MANY_SUBSCRIPTIONS
+
+
+def _for_delay(made: Any) -> str:
+    """Return the other remedy for a timer: it may be meant to run once."""
+    return "; one that should run once is cancelled in its callback" if isinstance(made, Timer) else ""
 
 
 def _is_alive(other: object) -> bool:

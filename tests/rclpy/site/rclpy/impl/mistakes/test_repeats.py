@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
+from functools import partial
 
 import pytest
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from rclpy.impl.mistakes import repeats
-from rclpy.impl.mistakes.repeats import MANY, MANY_APART
+from rclpy.impl.mistakes.repeats import MANY, MANY_APART, MANY_SUBSCRIPTIONS
 from rclpy.node import Node
 from rclpy.subscription import Subscription
 from tests.rclpy.conftest import Spinner
@@ -42,8 +43,27 @@ def test_what_a_callback_makes(node: Node, spin: Spinner, caplog: Caplog) -> Non
     assert told(caplog) == [
         f"/node has 10 publishers of /chat created in {first}{line + 1}: {way}",
         f"/node has 10 clients of /switch created in {first}{line + 2}: {way}",
-        f"/node has 10 timers of <lambda> created in {first}{line + 3}: {way}",
+        f"/node has 10 timers of <lambda> created in {first}{line + 3}: {way}; "
+        "one that should run once is cancelled in its callback",
     ]
+
+
+def test_a_callback_that_subscribes_again(node: Node, spin: Spinner, caplog: Caplog) -> None:
+    """It soon handles each message three times, which is told; different callbacks may share a topic."""
+    for number in range(MANY_SUBSCRIPTIONS + 1):
+        node.create_subscription(String, "chat", partial(nothing, number), 10)
+    assert told(caplog) == []
+
+    def subscribe() -> None:
+        node.create_subscription(String, "news", nothing, 10)
+
+    subscribe()
+    subscribe()
+    assert told(caplog) == []
+    subscribe()
+    place = f"test_repeats.py:{subscribe.__code__.co_firstlineno + 1}"
+    way = "create one in __init__, and keep it in an attribute"
+    assert told(caplog) == [f"/node has 3 subscriptions of /news created in {place}: {way}"]
 
 
 def test_what_is_many_by_right(node: Node, spin: Spinner, caplog: Caplog) -> None:
