@@ -27,7 +27,7 @@ from graphflow.rclpy.hints.fields import (
     wrong_value,
 )
 from graphflow.rclpy.hints.frames import PATH, is_defined_by_user, lacking, line_of, named, own
-from graphflow.rclpy.hints.names import missing_name, misspelt_init, unknown_name, unset
+from graphflow.rclpy.hints.names import missing_name, misspelt_init, module_as_class, severity, unknown_name, unset
 from graphflow.rclpy.hints.pending import early_result
 from graphflow.rclpy.hints.tables import ATTRIBUTES, TEXTS
 from graphflow.rclpy.messages.classes import StrictMessage
@@ -153,6 +153,8 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     early_result,
     unset,
     misspelt_init,
+    module_as_class,
+    severity,
     wrong_call,
     called_value,
     _stamp,

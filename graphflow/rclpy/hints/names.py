@@ -129,6 +129,32 @@ def misspelt_init(error: BaseException, frames: list[FrameType]) -> str:
     return ""
 
 
+def module_as_class(error: BaseException, frames: list[FrameType]) -> str:
+    """Name the class to inherit from where a module stands for it: `class Talker(rclpy.node)`."""
+    users = own(frames)
+    line = line_of(frames)
+    if not isinstance(error, TypeError) or not str(error).startswith("module() ") or not users:
+        return ""
+    for path in PATH.findall(line.partition("(")[2]):
+        module = named(path, users[-1])
+        if isinstance(module, ModuleType):
+            last = module.__name__.rpartition(".")[2].replace("_", "")
+            same = next((name for name in vars(module) if name.lower() == last and name != last), "")
+            way = f": from {module.__name__} import {same}, and write {same} in place of {path}" if same else ""
+            return f"{path} is a module, and no class{way}"
+    return ""
+
+
+def severity(error: BaseException, _frames: list[FrameType]) -> str:
+    """Name the severity that a text stands for."""
+    found = re.match(r"'(\w+)' is not a valid LoggingSeverity", str(error))
+    if not isinstance(error, ValueError) or found is None:
+        return ""
+    names = list(sys.modules["rclpy.logging"].LoggingSeverity.__members__)
+    near = nearest(found[1].upper(), names) or "INFO"
+    return f"write LoggingSeverity.{near}, from rclpy.logging"
+
+
 def _path_of(attribute: str, line: str) -> str:
     """Return the owner of an attribute that a line reads: `self.pub` of `self.pub.publish(m)`."""
     paths = [path.rpartition(".") for path in PATH.findall(line)]

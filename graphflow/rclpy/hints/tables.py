@@ -106,7 +106,6 @@ TEXTS: dict[str, str] = {
     r"parameter \"throttle\w*\" is not one of the recognized logging options": (
         "seconds between two lines are throttle_duration_sec=1.0"
     ),
-    r"'(\w+)' is not a valid LoggingSeverity": "write LoggingSeverity.{0}, from rclpy.logging",
     r"Must pass a builtin_interfaces\.msg\.Time object": "pass a message's stamp: Time.from_msg(msg.header.stamp)",
     r"of type '(\w+)_ARRAY', expecting type 'BYTE_ARRAY'": (
         "[] counts as a list of bytes: declare Parameter.Type.{0}_ARRAY in place of it"

@@ -129,7 +129,9 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: MAKER.add_node(n), "MultiThreadedExecutor is a class: create an instance, MultiThreadedExecutor()"),
     (lambda n: MAKER.shutdown(), "MultiThreadedExecutor is a class: create an instance, MultiThreadedExecutor()"),
     (lambda n: n.get_logger().info("a", throttle=1.0), "throttle_duration_sec=1.0"),
-    (lambda n: n.get_logger().set_level("DEBUG"), "write LoggingSeverity.DEBUG, from rclpy.logging"),
+    (lambda n: n.get_logger().set_level("debug"), "write LoggingSeverity.DEBUG, from rclpy.logging"),
+    (lambda n: n.get_logger().set_level("warning"), "write LoggingSeverity.WARN, from rclpy.logging"),
+    (lambda n: n.get_logger().set_level("loud"), "write LoggingSeverity.INFO, from rclpy.logging"),
     (lambda n: TIME.from_msg(Twist()), "pass a message's stamp: Time.from_msg(msg.header.stamp)"),
     (
         lambda n: n.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(), print),

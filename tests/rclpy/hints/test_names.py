@@ -91,6 +91,11 @@ LAMPS = [
         "self.hear is a callback, which has no reset: keep the result of create_timer(...), and call its reset()",
     ),
     ("def tick(self):\n    'Hello ' + self.count", "format it: f'... {value}', or str(value)"),
+    (
+        "def tick(self):\n    import rclpy\n    class Light(rclpy.node):\n        pass",
+        "rclpy.node is a module, and no class: from rclpy.node import Node, and write Node in place of rclpy.node",
+    ),
+    ("def tick(self):\n    import os\n    class Light(os):\n        pass", "os is a module, and no class"),
     ("print(Lamp)", "this line is inside class Lamp: indent it less"),
 ]
 
