@@ -11,7 +11,7 @@ from typing import Any
 from graphflow.names import nearest
 from graphflow.rclpy.hints.frames import PATH, lacking, line_of, named, own
 from graphflow.rclpy.messages import values
-from graphflow.rclpy.messages.classes import StrictMessage
+from graphflow.rclpy.messages.classes import StrictMessage, described
 
 _FIELD = re.compile(r"The '(\w+)' field must be (?:a sub message )?of type '(\w+)'")
 _ELEMENTS = re.compile(r" (?:set|sequence).* of type '(int|float|str|bool)'")
@@ -150,7 +150,7 @@ def _wrong_element(checks: list[dict[str, Any]], text: str) -> str:
             return f"one of its elements is {reprlib.repr(last['item'])}, which is out of range"
         is_made = kind is not None and isinstance(last["item"], _PLAIN) and _can_be(kind[1], last["item"])
         way = f": write [{kind[1]}(v) for v in ...]" if kind is not None and is_made else ""
-        return f"one of its elements is {reprlib.repr(last['item'])}{way}"
+        return f"one of its elements is {described(last['item'])}{way}"
     value = last["value"]
     way = f": a list is expected, write [{value!r}]" if kind is not None and type(value).__name__ == kind[1] else ""
     return f"it was given {reprlib.repr(value)}{way}"

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import os
 import re
+import reprlib
 from array import array
 from collections.abc import Callable
 from types import SimpleNamespace
@@ -231,11 +232,40 @@ def _checked(message: StrictMessage) -> StrictMessage:
         try:
             setattr(message, field.name, value)
         except AssertionError as error:
-            raise EncodeError(f"{type(message).__name__}.{field.name}: {error}") from None
+            text = f"{type(message).__name__}.{field.name}: {error}{_odd_element(field, value)}"
+            raise EncodeError(text) from None
         for part in value if field.type.array and not field.type.is_primitive else [value]:
             if isinstance(part, StrictMessage):
                 _checked(part)
     return message
+
+
+def _odd_element(field: Field, value: object) -> str:
+    """Describe the first element of a list that does not fit, for example because it was appended."""
+    if not isinstance(value, list):
+        return ""
+    cls = None if field.type.is_primitive else message_class(field.type.base)
+    fits = checker(field.name, field.type._replace(array="", size=0), cls)
+    for number, item in enumerate(value):
+        try:
+            fits(item)
+        except AssertionError:
+            return f"; element {number} is {described(item)}{_within(cls, item)}"
+    return ""
+
+
+def described(value: object) -> str:
+    """Describe a value in a few words: `a Pose`, or a number or text itself."""
+    return f"a {type(value).__name__}" if isinstance(value, StrictMessage) else reprlib.repr(value)
+
+
+def _within(cls: type[StrictMessage] | None, item: object) -> str:
+    """Show how to make a message of another in it: a PoseStamped of a Pose."""
+    if cls is None or not isinstance(item, StrictMessage):
+        return ""
+    fields = (f.name for f in cls.SCHEMA.fields if f.type.base == item.SCHEMA.name and not f.type.array)
+    name = next(fields, "")
+    return f": write {cls.__name__}({name}=...)" if name else ""
 
 
 @made_once

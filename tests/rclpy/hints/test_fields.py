@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from example_interfaces.srv import AddTwoInts
 from geometry_msgs.msg import Twist, Vector3
+from nav_msgs.msg import Path as Route
 from rcl_interfaces.msg import ParameterValue
 from sensor_msgs.msg import Image, JointState
 from std_msgs.msg import Bool, Header, Int32
@@ -72,6 +73,7 @@ ONE = "dimensions, and the field one: write "
         ("m.data = 1 << 40", "it was given 1099511627776"),
         ("b.data = 'yes'", "it was given 'yes': write True or False"),
         ("j.name = ['a', 2]", "one of its elements is 2: write [str(v) for v in ...]"),
+        ("route.poses = [t]", "one of its elements is a Twist"),
         ("j.position = [1.0, 'b']", "one of its elements is 'b'"),
         ("j.position = [1.0, '2']", "one of its elements is '2': write [float(v) for v in ...]"),
         ("j.name = 'ab'", "it was given 'ab'"),
@@ -90,7 +92,7 @@ def test_values_of_fields(tmp_path: Path, line: str, sentence: str) -> None:
     file = tmp_path / "wrong.py"
     file.write_text(line)
     known = {"m": Int32(), "h": Header(), "t": Twist(), "n": 3, "words": ["a", "7"], "clock": Clock()}
-    known |= {"b": Bool(), "j": JointState()}
+    known |= {"b": Bool(), "j": JointState(), "route": Route()}
     known |= {"Int32": Int32, "Twist": Twist, "Vector3": Vector3, "param": Parameter("n", value=1)}
     known |= {"time": time, "value": ParameterValue(), "image": Image(), "joints": JointState(), "zeros": np.zeros}
     known |= {"made": Twist, "matrix": np.zeros((1, 1)), "float32": np.float32, "int64": np.int64}

@@ -80,8 +80,17 @@ def test_what_was_changed_in_place_is_refused_when_it_is_sent() -> None:
     """By the path of the field."""
     value = cls("rcl_interfaces/msg/ParameterValue")(string_array_value=["a"])
     value.string_array_value.append(3)
-    with pytest.raises(EncodeError, match=r"ParameterValue\.string_array_value"):
+    with pytest.raises(EncodeError, match=r"ParameterValue\.string_array_value: .*; element 1 is 3$"):
         classes.encode(value)
+    path, pose = cls("nav_msgs/msg/Path")(), cls("geometry_msgs/msg/Pose")()
+    path.poses.append(pose)
+    with pytest.raises(EncodeError, match=r"element 0 is a Pose: write PoseStamped\(pose=\.\.\.\)$"):
+        classes.encode(path)
+    path.poses[0] = cls("geometry_msgs/msg/Twist")()
+    with pytest.raises(EncodeError, match=r"element 0 is a Twist$"):
+        classes.encode(path)
+    path.poses = ()
+    assert classes.encode(path) == classes.encode(type(path)())
 
 
 def test_messages_can_be_copied_and_pickled() -> None:
