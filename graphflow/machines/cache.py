@@ -169,17 +169,11 @@ class GraphCache:
         types, served = self.actions(), set(self.served_actions()) - {name}
         return _of_type(name, type_name, {action: types[action] for action in served}, served)
 
-    def unpublished(self, topic: str, known: Iterable[str] | None = None) -> str:
-        """Return a message that a topic has no publisher, with a suggestion unless it has subscriptions.
-
-        Args:
-            known: Names to suggest from; None for the topics that have a publisher.
-        """
+    def unpublished(self, topic: str) -> str:
+        """Return a message that a topic has no publisher, with a suggestion unless it has subscriptions."""
         if self.endpoints(Kind.SUBSCRIPTION, topic):
             return f"topic [{topic}] has subscriptions, and no publisher yet"
-        if known is None:
-            known = [name for name in self.topics() if self.endpoints(Kind.PUBLISHER, name)]
-        return f"topic [{topic}] does not appear to be published yet{self.instead(topic, known)}"
+        return f"topic [{topic}] does not appear to be published yet{self.instead(topic, self.topics())}"
 
     def without_events(self, service: str) -> str:
         """Return a message that a service publishes no introspection events, with the remedy or a suggestion."""

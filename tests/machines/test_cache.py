@@ -197,6 +197,9 @@ def test_topics_that_nobody_publishes() -> None:
     assert cache.unpublished("/talker") == "topic [/talker] does not appear to be published yet; it is a node"
     near = "; did you mean '/chatter'?"
     assert cache.unpublished("/chattr") == f"topic [/chattr] does not appear to be published yet{near}"
+    assert cache.unpublished("/cmd_val").endswith(
+        "yet; did you mean '/cmd_vel'?"
+    )  # published only while somebody drives
 
 
 def test_calls_of_which_nobody_tells() -> None:
