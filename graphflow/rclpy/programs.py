@@ -38,10 +38,9 @@ from graphflow.workspace.packages import (
     Workspace,
     bundled,
     find_workspace,
-    is_graphflows,
-    uses_ros,
 )
 from graphflow.workspace.setup_file import EntryPoint
+from graphflow.workspace.source_kinds import is_graphflows, uses_ros
 from graphflow.workspace.unfound import launching
 
 

@@ -20,7 +20,8 @@ from graphflow.system import ROS2, SITE
 from graphflow.workspace.installed import GROUP, Installed, installed, package_of
 from graphflow.workspace.node_classes import sole_class_in
 from graphflow.workspace.package_share import share_folder
-from graphflow.workspace.packages import Package, Workspace, bundled, find_workspace, uses_ros
+from graphflow.workspace.packages import Package, Workspace, bundled, find_workspace
+from graphflow.workspace.source_kinds import uses_ros
 from graphflow.workspace.unfound import why_no_package
 
 EXECUTABLES = {

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from graphflow.reading import found_bytes
-from graphflow.workspace.packages import uses_ros
 from graphflow.workspace.setup_file import EntryPoint
+from graphflow.workspace.source_kinds import uses_ros
 
 if TYPE_CHECKING:
     from importlib.metadata import Distribution

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from graphflow.reading import found_text
-from graphflow.workspace.packages import uses_ros
 from graphflow.workspace.project import module_of
+from graphflow.workspace.source_kinds import uses_ros
 
 
 def node_classes_in(file: Path) -> dict[str, int]:

@@ -5,7 +5,6 @@ The executables of a package are read from its `setup.py`, `setup.cfg` or `CMake
 
 from __future__ import annotations
 
-import ast
 import os
 import re
 from collections import deque
@@ -22,6 +21,7 @@ from graphflow.names import nearest
 from graphflow.reading import lenient_text
 from graphflow.system import SITE
 from graphflow.workspace.setup_file import EntryPoint, SetupFile, entry_point, function_fault, starts_nodes
+from graphflow.workspace.source_kinds import is_graphflows
 
 DEPTH = 5
 """Depth in folders of the search for packages below a workspace."""
@@ -45,8 +45,6 @@ _SETUPS = ("setup.py", "CMakeLists.txt", "pyproject.toml")
 KINDS = ("msg", "srv", "action")
 _NEAR_KINDS = {*KINDS, "msgs", "message", "messages", "srvs", "service", "services", "actions"}
 """Names of folders, in lower case, that are probably meant for interface definitions."""
-_ROS = ("rclpy", "launch", "launch_ros")
-"""Packages of which a program for ROS imports at least one."""
 BUNDLED = Path(__file__).parents[1] / "rclpy" / "packages"
 """The bundled packages with programs of ROS 2, in the layout of a workspace."""
 
@@ -427,23 +425,3 @@ def _of_cmake(package: Package) -> Iterator[tuple[str, Path]]:
             file = package.folder / word
             if file.is_file():
                 yield renamed or file.name, file
-
-
-def is_graphflows(file: Path) -> bool:
-    """Return whether a Python file is written for graphflow, and not for rclpy."""
-    return "graphflow" in lenient_text(file) and not uses_ros(file)
-
-
-def uses_ros(file: Path) -> bool:
-    """Return whether a Python file imports rclpy or launch, at the top or in a function."""
-    try:
-        tree = ast.parse(lenient_text(file))
-    except (SyntaxError, ValueError):
-        return False
-    for node in ast.walk(tree):
-        match node:
-            case ast.Import(names=names) if any(alias.name.partition(".")[0] in _ROS for alias in names):
-                return True
-            case ast.ImportFrom(module=str(module), level=0) if module.partition(".")[0] in _ROS:
-                return True
-    return False

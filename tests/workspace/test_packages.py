@@ -10,8 +10,9 @@ import pytest
 from graphflow.workspace import packages
 from graphflow.workspace.executables import package_folder
 from graphflow.workspace.package_share import share_folder
-from graphflow.workspace.packages import find_workspace, uses_ros
+from graphflow.workspace.packages import find_workspace
 from graphflow.workspace.setup_file import EntryPoint
+from graphflow.workspace.source_kinds import uses_ros
 
 
 def package(folder: Path, name: str, **files: str) -> Path:
@@ -133,26 +134,6 @@ def test_packages_side_by_side_are_a_workspace_too(tmp_path: Path) -> None:
     assert set(find_workspace(tmp_path / "repo").packages) == {"one", "two"}
     (tmp_path / "empty").mkdir()
     assert not find_workspace(tmp_path / "empty").packages
-
-
-@pytest.mark.parametrize(
-    ("text", "verdict"),
-    [
-        ("import rclpy", True),
-        ("import os, rclpy.node as n", True),
-        ("def f():\n    from rclpy.node import Node", True),
-        ("from graphflow import Node", False),
-        ("from .rclpy import x", False),
-        ("'import rclpy'", False),
-        ("import (", False),
-    ],
-)
-def test_files_that_use_rclpy_are_told_from_others(tmp_path: Path, text: str, verdict: bool) -> None:
-    """By their imports."""
-    (tmp_path / "a.py").write_text(text)
-    assert uses_ros(tmp_path / "a.py") is verdict
-    (tmp_path / "a.py").write_bytes(b"\xef\xbb\xbf" + (tmp_path / "a.py").read_bytes())  # as some editors save it
-    assert uses_ros(tmp_path / "a.py") is verdict
 
 
 def test_other_entry_points_are_no_executables(tmp_path: Path) -> None:

@@ -120,7 +120,7 @@ def _refuse_source(file: Path) -> None:
         UsageFault: It has nodes; the text has the command that runs one.
     """
     from graphflow.workspace.node_classes import node_classes_in
-    from graphflow.workspace.packages import uses_ros
+    from graphflow.workspace.source_kinds import uses_ros
 
     classes = [] if uses_ros(file) else list(node_classes_in(file))
     if not classes and not uses_ros(file):

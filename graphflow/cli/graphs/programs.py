@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from graphflow.graph.plan import Plan, PlannedNode
-from graphflow.workspace.packages import find_workspace, uses_ros
+from graphflow.workspace.packages import find_workspace
+from graphflow.workspace.source_kinds import uses_ros
 
 
 def sources(plan: Plan) -> tuple[list[Path], list[PlannedNode]]:

@@ -21,8 +21,8 @@ from graphflow.reading import found_text
 from graphflow.supervisor.launching.probe import probe
 from graphflow.supervisor.launching.probed import read_interfaces, slips_in
 from graphflow.workspace.node_classes import node_classes_in
-from graphflow.workspace.packages import uses_ros
 from graphflow.workspace.project import add_interfaces, module_of, shown
+from graphflow.workspace.source_kinds import uses_ros
 
 
 def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:

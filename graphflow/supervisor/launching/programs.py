@@ -9,7 +9,7 @@ from pathlib import Path
 from graphflow.graph.plan import PlannedNode
 from graphflow.introspect.messages.echo import flow
 from graphflow.names import split
-from graphflow.workspace.packages import uses_ros
+from graphflow.workspace.source_kinds import uses_ros
 
 
 def command_of(node: PlannedNode) -> list[str]:
