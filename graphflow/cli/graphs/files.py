@@ -207,13 +207,21 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     Deadlocks visible in the source are reported: CERTAIN (exit code 1), IF THIS BRANCH RUNS, or POSSIBLE. So are
     names that nothing in the graph provides, and mistakes in the source that Python does not report. Given a Python
     file or a folder, node classes are imported, and nodes written for rclpy are only read. A graph's programs are read
-    if they are written for rclpy, and else counted. A Python launch file is executed in a process of its own.
+    if they are written for rclpy, and else counted. A Python launch file is executed in a process of its own. Files of
+    parameters, and a package's setup.py, are checked, too.
     """
     path = _graph_meant(graph)
     if path is None:
+        from graphflow.cli.graphs.ros_files import check_setup
         from graphflow.cli.graphs.sources import check_sources
 
+        if Path(graph).name == "setup.py" and Path(graph).is_file() and not args:
+            return check_setup(Path(graph), as_json=as_json)
         return check_sources([Path(graph), *map(Path, args)], as_json=as_json)
+    from graphflow.cli.graphs.ros_files import check_parameters, is_parameters
+
+    if is_parameters(path) and not args:
+        return check_parameters(path, as_json=as_json)
     from graphflow.analysis.deadlock_check import findings
     from graphflow.analysis.rclpy_check import findings_in
     from graphflow.cli.graphs.programs import sources

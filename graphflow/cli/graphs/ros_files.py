@@ -1,0 +1,66 @@
+"""`graphflow check` of ROS's own files: a file of parameters, and a package's `setup.py`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from graphflow.cli import exits, output
+from graphflow.errors import GraphFileError, UsageFault
+from graphflow.graph import params_file
+from graphflow.reading import lenient_text
+from graphflow.workspace.packages import find_workspace
+from graphflow.workspace.project import shown
+
+_SECTION = re.compile(r"""^\s+["']?ros_+param(?:eter)?s?["']?\s*:""", re.MULTILINE)
+_OTHER = re.compile(r"^(?:nodes|include|group|steps|templates|launch)\s*:", re.MULTILINE)
+"""Keys at the top of a graph file, or of a launch file."""
+_SHOWN = 5
+"""Names that one line shows."""
+
+
+def is_parameters(file: Path) -> bool:
+    """Return whether a YAML file has parameters by node, perhaps misspelt, and is no graph file."""
+    text = lenient_text(file) if file.suffix in (".yaml", ".yml") else ""
+    return _SECTION.search(text) is not None and _OTHER.search(text) is None
+
+
+def check_parameters(file: Path, *, as_json: bool) -> int:
+    """Report the mistakes in a file of parameters."""
+    try:
+        sections = params_file.read(file, shown(file))
+    except GraphFileError as error:
+        return _report(file, [str(problem) for problem in sorted(error.problems)], "", as_json=as_json)
+    names = [section.pattern for section in sections]
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return _report(file, [], f"parameters of {', '.join(names[:_SHOWN])}{more}", as_json=as_json)
+
+
+def check_setup(file: Path, *, as_json: bool) -> int:
+    """Report the executables of a `setup.py` that do not start.
+
+    Raises:
+        UsageFault: It is not that of a package.
+    """
+    folder = file.resolve().parent
+    package = next((p for p in find_workspace(file).packages.values() if p.folder.resolve() == folder), None)
+    if package is None:
+        raise UsageFault(f"{file} is not that of a ROS package: there is no package.xml beside it")
+    faults = [fault for name in package.executables if (fault := package.fault_of(name))]
+    faults += [fault for name in package.executables if (fault := package.copy_fault(name))]
+    if why := package.why_no_executable:
+        faults.append(f"{file}: {why.removeprefix('; ')}")
+    names = ", ".join(package.executables) or "none"
+    return _report(file, faults, f"executables: {names}", as_json=as_json)
+
+
+def _report(file: Path, problems: Sequence[str], found: str, *, as_json: bool) -> int:
+    if as_json:
+        output.as_json({"problems": [{"message": text} for text in problems], "remarks": [], "deadlocks": []})
+    else:
+        for text in problems:
+            output.talk(text)
+        count = f"{len(problems)} problem{'s' * (len(problems) != 1)}" if problems else "no problems"
+        output.data(f"{file}: {', '.join(filter(None, [found, count]))}")
+    return exits.USAGE if problems else exits.OK

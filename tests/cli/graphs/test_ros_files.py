@@ -1,0 +1,72 @@
+"""`graphflow check` of a file of parameters, and of a `setup.py`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from graphflow.cli import exits
+from graphflow.cli.graphs.ros_files import check_parameters, check_setup, is_parameters
+from graphflow.errors import UsageFault
+
+PARAMETERS = "/talker:\n  ros__parameters:\n    rate: 2.0\n"
+MANIFEST = '<package format="3"><name>lamp</name></package>'
+SETUP = "from setuptools import setup\nsetup(entry_points={{'console_scripts': [{}]}})\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "verdict"),
+    [
+        (PARAMETERS, True),
+        (PARAMETERS.replace("ros__", "ros_"), True),
+        ("/**:\n    'ros__parameters': {rate: 1.0}\n", True),
+        (f"nodes:\n  {PARAMETERS}", False),
+        ("nodes: {}\n", False),
+        ("", False),
+    ],
+)
+def test_which_file_has_parameters(tmp_path: Path, text: str, verdict: bool) -> None:
+    """A graph file has keys of its own, and other files another suffix."""
+    for name in ("p.yaml", "p.yml", "p.txt"):
+        (tmp_path / name).write_text(text)
+        assert is_parameters(tmp_path / name) is (verdict and name != "p.txt")
+
+
+def test_a_file_of_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The nodes that it names are shown, or its mistakes."""
+    file = tmp_path / "p.yaml"
+    file.write_text(PARAMETERS)
+    assert check_parameters(file, as_json=False) == exits.OK
+    assert capsys.readouterr().out == f"{file}: parameters of /talker, no problems\n"
+    file.write_text("".join(PARAMETERS.replace("talker", f"t{i}") for i in range(7)))
+    assert check_parameters(file, as_json=False) == exits.OK
+    assert "parameters of /t0, /t1, /t2, /t3, /t4 and 2 more, no problems" in capsys.readouterr().out
+    file.write_text(PARAMETERS.replace("ros__", "ros_"))
+    assert check_parameters(file, as_json=False) == exits.USAGE
+    told = capsys.readouterr()
+    assert "did you mean 'ros__parameters', with two _ in a row?" in told.err
+    assert told.out == f"{file}: 1 problem\n"
+
+
+def test_a_setup_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """An executable whose module is missing is a problem, and so is a file that names none."""
+    file = tmp_path / "setup.py"
+    file.write_text(SETUP.format("'go = lamp.go:main', 'on = lamp.on:main'"))
+    with pytest.raises(UsageFault, match=r"no package\.xml beside it"):
+        check_setup(file, as_json=False)
+    (tmp_path / "package.xml").write_text(MANIFEST)
+    (tmp_path / "lamp").mkdir()
+    (tmp_path / "lamp" / "go.py").write_text("import rclpy\ndef main():\n    rclpy.spin(node)\n")
+    assert check_setup(file, as_json=False) == exits.USAGE
+    told = capsys.readouterr()
+    assert f"{file}:2: on is lamp.on:main, and there is no " in told.err
+    assert told.out == f"{file}: executables: go, on, 1 problem\n"
+    file.write_text(SETUP.format("'go = lamp.go:main'"))
+    assert check_setup(file, as_json=True) == exits.OK
+    assert json.loads(capsys.readouterr().out) == {"problems": [], "remarks": [], "deadlocks": []}
+    file.write_text(SETUP.format(""))
+    assert check_setup(file, as_json=True) == exits.USAGE
+    [problem] = json.loads(capsys.readouterr().out)["problems"]
+    assert problem["message"].startswith(f"{file}: ")
