@@ -6,6 +6,7 @@ Python runs them silently and without effect.
 from __future__ import annotations
 
 import logging
+import sys
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -47,7 +48,8 @@ class Uncalled:
                 self._read(node, is_spun=is_spun)
 
     def _leaves(self, node: Node) -> None:
-        self._read(node, is_spun=True)
+        if not isinstance(getattr(sys, "last_value", None), Exception):  # which has ended the program, and is shown
+            self._read(node, is_spun=True)
         self._nodes.discard(internals_of(node).core.id)
         self._seen.discard(internals_of(node).core.id)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +54,26 @@ def test_a_method_without_parentheses(
         "lamp.py:5: timer.state == 'on' compares without effect; write = to set it",
         "lamp.py:6: target=work() calls work at once, and passes on its result, None; write target=work",
     ]
+
+
+@pytest.mark.parametrize(("ended_by", "is_told"), [(ValueError(), False), (KeyboardInterrupt(), True)])
+def test_a_program_that_an_error_ends(
+    node: Node,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    ended_by: BaseException,
+    is_told: bool,
+) -> None:
+    """The error is its last word; Ctrl-C is none."""
+    monkeypatch.setattr(sys, "last_value", ended_by, raising=False)
+    space: dict[str, Any] = {}
+    file = tmp_path / "lamp.py"
+    file.write_text(SOURCE)
+    exec(compile(SOURCE, str(file), "exec"), space)
+    Node("lamp").create_timer(100.0, space["tick"])
+    rclpy.shutdown()
+    assert ("parentheses" in caplog.text) is is_told
 
 
 def test_nodes_that_left(node: Node) -> None:
