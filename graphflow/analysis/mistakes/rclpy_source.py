@@ -13,6 +13,7 @@ from typing import Final
 from graphflow.analysis.mistakes.calls.after_spin import after_spin
 from graphflow.analysis.mistakes.calls.called_early import results_passed, spins_called
 from graphflow.analysis.mistakes.calls.cancelled_futures import cancelled_futures
+from graphflow.analysis.mistakes.calls.early_messages import early_messages
 from graphflow.analysis.mistakes.calls.forgotten_callbacks import forgotten_callbacks
 from graphflow.analysis.mistakes.calls.inverted_waits import inverted_waits
 from graphflow.analysis.mistakes.calls.lifecycle_hooks import lifecycle_hooks
@@ -47,6 +48,7 @@ _IN_PROGRAMS: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     forgotten_callbacks,
     two_names,
     early_results,
+    early_messages,
 )
 """Checks of programs for rclpy alone."""
 

@@ -76,9 +76,10 @@ def info(name: str, verbose: bool, as_json: bool) -> int:
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
         cache = view.cache
-    types = cache.topics(hidden=True).get(full)
-    if types is None:
-        raise CallError(f"Unknown topic '{full}'{cache.instead(full, cache.topics())}")
+        types = cache.topics(hidden=True).get(full)
+        if types is None:
+            near = cache.instead(full, cache.topics()) or view.nobody_here()
+            raise CallError(f"Unknown topic '{full}'{near}")
     publishers, subscriptions = cache.endpoints(Kind.PUBLISHER, full), cache.endpoints(Kind.SUBSCRIPTION, full)
     if as_json:
         endpoints = {"publishers": publishers, "subscriptions": subscriptions}
@@ -240,10 +241,11 @@ def type_(name: str) -> int:
     full = expand(name, "/", "cli")
     with View(domain_id()) as view:
         cache = view.cache
-    topics = cache.topics(hidden=True)
+        topics = cache.topics(hidden=True)
+        alone = view.nobody_here()
     output.lines(topics.get(full, []))
     if full not in topics:
-        output.error(f"Unknown topic '{full}'{cache.instead(full, topics)}")
+        output.error(f"Unknown topic '{full}'{cache.instead(full, topics) or alone}")
     return exits.OK if full in topics else exits.FAILED
 
 

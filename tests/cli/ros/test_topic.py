@@ -177,6 +177,9 @@ def test_type_and_find(standing: Machine) -> None:
     """The one from the other; a type may be short."""
     assert standing.look("topic", "type", "chatter") == f"{STRING}\n"
     assert "Unknown topic '/chater'; did you mean '/chatter'?" in standing.look("topic", "type", "/chater", code=1)
+    for verb in ("type", "info"):
+        told = standing.look("--domain", "77", "topic", verb, "/chatter", code=1)
+        assert "Unknown topic '/chatter'; this domain, 77, has no other nodes; domain " in told
     assert standing.look("topic", "find", STRING).split() == ["/chatter", "/office/minutes"]
     assert standing.look("topic", "find", "std_msgs/String", "-c") == "2\n"
     assert "/office/_drawer" in standing.look("topic", "find", STRING, "--include-hidden-topics")
