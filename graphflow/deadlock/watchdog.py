@@ -75,6 +75,8 @@ class Watchdog:
         if it was not blocked."""
         self._told: set[str] = set()
         """Lines that were reported for blocking the loop often."""
+        self.on_look: list[Callable[[], None]] = []
+        """Called at each check, on the watching thread."""
         self.late = 0
         """Number of pings that took more than `ANSWER_WITHIN` seconds."""
         self.longest = 0.0
@@ -103,6 +105,8 @@ class Watchdog:
             lost = time.monotonic() - began - pause
             if lost > REPORT_AFTER:
                 logger.warning("nothing in this process could run for %.1f s: %s", lost, _HELD)
+            for look in self.on_look:
+                look()
             if self._is_busy():
                 self._ping()
             else:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 from graphflow.runtime.context import Context
 from graphflow.runtime.ending import StopRequest
+from graphflow.runtime.mistakes.errors.kept_errors import report_kept_errors
 from graphflow.runtime.mistakes.errors.lost_errors import log_lost_errors
 from graphflow.runtime.mistakes.other_threads import report_foreign_calls
 from graphflow.runtime.node import Node
@@ -39,6 +40,7 @@ class Company:
         """
         self.nodes += nodes
         log_lost_errors(self._context.loop)
+        report_kept_errors(self._context)
         report_foreign_calls(self._context.loop)
         asked = asyncio.create_task(self._stop.wait())
         try:

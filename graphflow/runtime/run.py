@@ -23,6 +23,7 @@ from graphflow.runtime.importing import refuse_to_run
 from graphflow.runtime.logs.logger import node_logger
 from graphflow.runtime.logs.rosout import log_level, setup_console
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
+from graphflow.runtime.mistakes.errors.kept_errors import report_kept_errors
 from graphflow.runtime.mistakes.errors.lost_errors import log_lost_errors
 from graphflow.runtime.mistakes.errors.python_errors import remark_on
 from graphflow.runtime.mistakes.other_threads import report_foreign_calls
@@ -91,6 +92,7 @@ async def _block(nodes: Sequence[Node], context: Context | None) -> AsyncGenerat
             context = await Context.open()
             stack.push_async_callback(context.close)
         log_lost_errors(context.loop)
+        report_kept_errors(context)
         report_foreign_calls(context.loop)
         for node in nodes:
             core = core_of(node)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import linecache
+import re
 import sys
 from collections.abc import Callable, Coroutine
 from functools import wraps
@@ -52,8 +53,11 @@ def _has_not_begun(call: _Call) -> bool:
 
 
 def _written(call: _Call) -> str:
-    """Return the line with its `await`, if it consists of the call only."""
+    """Return the line with its `await` if it consists of the call only, or else the call."""
     line = linecache.getline(call.place.file, call.place.line).partition("  #")[0].strip()
     name = getattr(call.coroutine, "__name__", "")
     is_whole = line.endswith(")") and line.partition("(")[0].endswith(f".{name}")
-    return f"await {line}" if is_whole and "=" not in line.partition("(")[0] else f"await graph...{name}(...)"
+    if is_whole and "=" not in line.partition("(")[0]:
+        return f"await {line}"
+    found = re.search(rf"[\w.]+\.{name}\(", line)
+    return f"await {found[0] if found else f'graph...{name}('}...)"

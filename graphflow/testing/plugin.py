@@ -30,7 +30,7 @@ IDLE_LIMIT = 5.0
 """Longest idle time of a test with a manual clock, in seconds of real time."""
 IDLE = 0.02
 """Processor time in seconds, per second of real time, below which a test counts as idle."""
-_ASYNC_DEF = "; write async def instead of def"
+_ASYNC_DEF = ", and async def in place of def"
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -167,6 +167,8 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                 except (Exception, pytest.fail.Exception) as error:  # any failure of the test, reported and raised
                     if graph is not None and graph.loop is loop and not _is_of_a_line(error):
                         await _report_unmet(item, graph)
+                    else:
+                        _report(_forgotten(), item)
                     raise
                 finally:
                     if watching is not None:
@@ -215,11 +217,15 @@ def _is_of_a_line(error: BaseException) -> bool:
 
 async def _report_unmet(item: pytest.Function, graph: Graph) -> None:
     """Add the unmet waits to the report of a failing test."""
+    from graphflow.analysis.user_code import place_in
+    from graphflow.runtime.mistakes.errors.kept_errors import KeptErrors, failed_tasks, name_of
     from graphflow.testing.unmet import arrivals, unmet
 
     before = arrivals(graph)
     await asyncio.sleep(0)  # lets new tasks start
     found = _forgotten()
+    for task, error in failed_tasks(KeptErrors(asyncio.get_running_loop()).tasks()):
+        found.append(f"{name_of(task)} failed, and nothing awaits it: {error!r} ({place_in(error)})")
     try:
         found += await unmet(graph, before)
     except RuntimeError as error:  # the graph does not settle

@@ -20,7 +20,7 @@ async def test_a_call_that_is_not_awaited(graph: Graph) -> None:
     coroutine = graph.settle()
     assert told() == [
         "this has no effect until it is awaited; write await graph.clock.advance(1.0)",
-        "this has no effect until it is awaited; write await graph...settle(...)",
+        "this has no effect until it is awaited; write await graph.settle(...)",
     ]
     assert told() == []
     del coroutine

@@ -150,23 +150,59 @@ def test_tests_that_would_pass_in_vain(pytester: pytest.Pytester) -> None:
 
         async def test_next(graph):
             assert graph.nodes
+
+        async def test_up(graph):
+            assert graph.up("g.yaml")["/counter"]
+
+        async def test_right(graph):
+            await graph.start(Counter())
+            await graph.clock.advance(1.0)
         """,
     )
 
-    result.assert_outcomes(failed=7)
+    result.assert_outcomes(failed=8, passed=1)
     result.stdout.fnmatch_lines(
         [
             "*assert *'1' == '2'*",
             "*test_it.py:15: this has no effect until it is awaited; write await graph.clock.advance(2.0)*",
-            "*test_it.py:18: this * write await graph.start(Counter()); write async def instead of def*",
+            "*test_it.py:18: this * write await graph.start(Counter()), and async def in place of def*",
             "*call it: await settle()*",
             "*'Graph' object has no attribute 'advance'; write await graph.clock.advance(1.0)*",
             "*_ test_def _*",
-            "*test_it.py:29: this * write await graph.start(Counter()); write async def instead of def*",
+            "*test_it.py:29: this * write await graph.start(Counter()), and async def in place of def*",
             "*_ test_next _*",
+            "*_ test_up _*",
+            "*test_it.py:36: this * write await graph.up(...)*",
         ]
     )
-    assert result.stdout.str().count("has no effect until it is awaited") == 3
+    assert result.stdout.str().count("has no effect until it is awaited") == 4
+
+
+def test_a_task_that_has_failed(pytester: pytest.Pytester) -> None:
+    """It may be why a test fails, and is shown with it."""
+    result = run(
+        pytester,
+        """
+        import asyncio
+        from graphflow import Node
+
+        class Robot(Node):
+            async def on_start(self):
+                self.driving = asyncio.create_task(self.drive())
+
+            async def drive(self):
+                raise KeyError("wheel")  # here
+
+        async def test_it(graph):
+            await graph.start(Robot())
+            await graph.settle()
+            assert graph.tap is None
+        """,
+    )
+
+    result.assert_outcomes(failed=1)
+    line = "*Robot.drive failed, and nothing awaits it: KeyError('wheel') (*test_it.py:9)"
+    result.stdout.fnmatch_lines(["*AssertionError*", line])
 
 
 def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,7 @@
-"""Errors that nobody awaits, of `asyncio.create_task` or `call_later`: logged as errors of handlers are."""
+"""Errors that nobody awaits, of `asyncio.create_task` or `call_later`: logged as errors of handlers are.
+
+Those of tasks that are kept are found by `kept_errors`.
+"""
 
 from __future__ import annotations
 
