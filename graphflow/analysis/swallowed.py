@@ -12,6 +12,9 @@ from graphflow.errors import Place
 
 _INTERRUPT = "KeyboardInterrupt"
 _INSTEAD = "write finally: in place of except, or do this in async def on_shutdown(self)"
+_ENDLESS = (
+    "this also catches CancelledError, so that nothing can end the loop: write except Exception, or raise it again"
+)
 _CAUGHT = {"CancelledError", "BaseException"}
 
 
@@ -64,6 +67,30 @@ def caught_in_vain(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
                 works = [s for s in node.body if not isinstance(s, (ast.Raise, ast.Pass))]
                 text = f"{_INTERRUPT} does not come to a node, which Ctrl-C cancels: {_INSTEAD}"
                 yield from [(node.lineno, text)] if works else []
+
+
+def endless_loops(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
+    """Yield the lines that catch CancelledError at an await in a loop, which then goes on for ever."""
+    for method in definition.body:
+        if not isinstance(method, ast.AsyncFunctionDef):
+            continue
+        found: set[int] = set()
+        for loop in nodes_in(method):
+            if isinstance(loop, ast.While):
+                tries = (node for node in nodes_in(loop) if isinstance(node, ast.Try) and _awaits(node))
+                found |= {handler.lineno for node in tries for handler in node.handlers if _goes_on(handler, loop)}
+        yield from ((line, _ENDLESS) for line in sorted(found))
+
+
+def _awaits(node: ast.Try) -> bool:
+    return any(isinstance(part, ast.Await) for statement in node.body for part in nodes_in(statement))
+
+
+def _goes_on(handler: ast.ExceptHandler, loop: ast.While) -> bool:
+    """Whether a loop goes on after a cancellation; a condition may depend on what the handler sets."""
+    ends: tuple[type[ast.AST], ...] = (ast.Raise, ast.Return, ast.Break)
+    ends += () if isinstance(loop.test, ast.Constant) else (ast.Assign,)
+    return catching(handler) and not any(isinstance(node, ends) for node in nodes_in(handler))
 
 
 def _catches(caught: ast.expr | None) -> bool:

@@ -7,7 +7,9 @@ import asyncio
 from contextlib import suppress
 from typing import Any
 
-from graphflow.analysis.swallowed import caught_in_vain, where_caught
+import pytest
+
+from graphflow.analysis.swallowed import caught_in_vain, endless_loops, where_caught
 
 NAME = "test_swallowed.py"
 
@@ -98,3 +100,47 @@ class Robot(Node):
         "this in async def on_shutdown(self)"
     )
     assert list(caught_in_vain(definition)) == [(6, text), (12, text)]
+
+
+LOOP = """
+class Node:
+    async def work(self):
+        {loop}:
+            try:
+                {body}
+            {handler}
+"""
+
+
+def _endless(loop: str, body: str, handler: str) -> list[int]:
+    definition = ast.parse(LOOP.format(loop=loop, body=body, handler=handler)).body[0]
+    assert isinstance(definition, ast.ClassDef)
+    found = list(endless_loops(definition))
+    assert all("write except Exception, or raise it again" in text for _, text in found)
+    return [line for line, _ in found]
+
+
+@pytest.mark.parametrize(
+    "handler", ["except: self.retry()", "except BaseException: pass", "except (A, CancelledError): 0"]
+)
+@pytest.mark.parametrize("loop", ["while True", "while self.on", "while True:\n         while True"])
+def test_a_loop_that_goes_on_after_a_cancellation(loop: str, handler: str) -> None:
+    """The line is told once."""
+    assert len(_endless(loop, "await self.call()", handler)) == 1
+
+
+@pytest.mark.parametrize(
+    ("loop", "body", "handler"),
+    [
+        ("while True", "await self.call()", "except Exception: pass"),
+        ("while True", "await self.call()", "except: raise"),
+        ("while True", "await self.call()", "except:\n                if self.done: return"),
+        ("while True", "await self.call()", "except CancelledError: break"),
+        ("while self.on", "await self.call()", "except CancelledError: self.on = False"),
+        ("while True", "self.call()", "except: pass"),
+        ("if True", "await self.call()", "except: pass"),
+    ],
+)
+def test_loops_that_end(loop: str, body: str, handler: str) -> None:
+    """They let the cancellation through, or end by themselves, or await nothing there."""
+    assert _endless(loop, body, handler) == []
