@@ -8,6 +8,7 @@ from graphflow.names import nearest
 
 OF_NODES = {
     "--params-file": "A parameter file belongs to a node of the graph file: params_file: FILE.yaml",
+    "-p": "A parameter of a node goes below its params:, or is set by graphflow param set NODE NAME VALUE",
     "--ros-args": "ROS arguments are for one node, started by run. A graph file has params: and remap: for each node",
 }
 """Options of `run` that concern one node, and the entries of a graph file that replace them."""

@@ -196,7 +196,8 @@ def test_wrong_arguments(given: Sequence[str], problem: str) -> None:
 def test_an_argument_where_none_is_declared() -> None:
     """In a file without arguments every one is a mistake."""
     assert problems("nodes: {a: {class: x:Y}}", "gain:=1") == [
-        "command line: there is no argument 'gain'; the file declares none under args:"
+        "command line: there is no argument 'gain'; the file declares none; a parameter of a node goes "
+        "below its params:, or is set by graphflow param set NODE gain VALUE"
     ]
 
 
@@ -361,7 +362,8 @@ steps:
 """,
         "c:=1",
     ) == [
-        "command line: there is no argument 'c'; there is b",
+        "command line: there is no argument 'c'; there is b; a parameter of a node goes below its params:, or is set "
+        "by graphflow param set NODE c VALUE",
         "1:1: unknown key 'domian'; did you mean 'domain'?",
         "3:3: argument 'b' is 1, but must be one of 2",
         "5:7: unknown key 'clas'; did you mean 'class'?",

@@ -15,6 +15,7 @@ from graphflow.markup.tree import Item
 from graphflow.names import did_you_mean
 
 COMMAND_LINE = Place("command line")
+_OF_NODES = "a parameter of a node goes below its params:, or is set by graphflow param set NODE {} VALUE"
 _SLIP = re.compile(r"([^\W\d]\w*) ?(?::=|[:=]) ?((?!\S*:=)\S+)")
 """An argument with a wrong sign or with spaces: `x=1`, `x:= 1`, `x: 1`."""
 
@@ -89,8 +90,9 @@ class Arguments:
                     help_ = help_ or f"; only $(var {name}) has its value"
                     self._problems.remark(COMMAND_LINE, f"no argument {name!r} is declared{help_}")
                 else:
-                    help_ = help_ or "; the file declares none under args:"
-                    self._problems.add(COMMAND_LINE, f"there is no argument {name!r}{help_}")
+                    help_ = help_ or "; the file declares none"
+                    way = "" if help_.startswith("; did you mean") else f"; {_OF_NODES.format(name)}"
+                    self._problems.add(COMMAND_LINE, f"there is no argument {name!r}{help_}{way}")
 
     def _text(self, name: str, spec: Item, default: str) -> Written:
         """Return the value of a launch file's argument: any text, if it is among the choices."""

@@ -5,6 +5,7 @@ Every check raises DeclarationError.
 
 from __future__ import annotations
 
+import dis
 import inspect
 import re
 from collections.abc import Callable, Mapping
@@ -17,10 +18,13 @@ from graphflow.msgs import base
 from graphflow.msgs.base import Message
 from graphflow.names import expand
 from graphflow.qos import Durability, History, Liveliness, Qos, Reliability
+from graphflow.runtime.callables import code_of
 from graphflow.runtime.declarations.params_in_names import refuse_param
 
 DEPTH = 10
 """Default depth of a queue."""
+_WAITING = ("GET_AWAITABLE", "GET_AITER")
+"""Bytecode of `await`, `async with` and `async for`."""
 SHORTEST_NS = 10_000
 """A shorter deadline, lifespan or lease is a number of another unit: a message takes longer even within a process."""
 
@@ -144,10 +148,10 @@ def check_function(fn: object, what: str, example: str) -> None:
 def check_plain(fn: object, what: str) -> None:
     """Check that a function for a thread is a `def`."""
     if inspect.iscoroutinefunction(fn):
-        name = fn.__name__
-        raise DeclarationError(
-            f"{what} runs a `def` in a thread, but {name} is an `async def`: await {name}(...) directly"
-        )
+        name, code = fn.__name__, code_of(inspect.unwrap(fn))
+        is_waiting = code is None or any(step.opname in _WAITING for step in dis.get_instructions(code))
+        way = f"await {name}(...) directly" if is_waiting else f"it awaits nothing, so write def {name}"
+        raise DeclarationError(f"{what} runs a `def` in a thread, but {name} is an `async def`: {way}")
 
 
 def check_callback(callback: object, arguments: range, what: str, place: Place, hint: str = "") -> int:

@@ -54,7 +54,7 @@ def test_values(declared: str, given: list[str], found: dict[str, Any]) -> None:
         ("{a: {default: true}}", "a:=1", "argument 'a': expected true or false, as its default true is, got 1"),
         ("{a: {choices: [x, y]}}", "a:=z", "f.yaml:1:2: argument 'a' is 'z', but must be one of x, y"),
         ("{a: {default: 1}}", "b:=1", "command line: there is no argument 'b'; there is a"),
-        ("{}", "b:=1", "command line: there is no argument 'b'; the file declares none under args:"),
+        ("{}", "b:=1", "command line: there is no argument 'b'; the file declares none"),
         ("{a: {}}", "a=1", "command line: 'a=1': an argument is written name:=value; write a:=1"),
     ],
 )
@@ -91,9 +91,8 @@ def test_a_default_of_another_type() -> None:
 def test_files_that_are_included() -> None:
     """What the including file gives is fixed; what holds there comes before the included file's default."""
     assert values("{a: {default: 1}, b: {default: 2}}", outer={"a": 7}, fixed="{b: 8}") == {"a": 7, "b": 8}
-    assert values("{a: {default: 1}}", "a:=3", fixed="{a: 8}") == [
-        "command line: there is no argument 'a'; the file declares none under args:"
-    ]
+    [problem] = values("{a: {default: 1}}", "a:=3", fixed="{a: 8}")
+    assert problem.startswith("command line: there is no argument 'a'; the file declares none")
     assert values("{gain: {default: 1}}", fixed="{gian: 8}") == [
         "over.yaml:1:2: the included file has no argument 'gian'; did you mean 'gain'?"
     ]

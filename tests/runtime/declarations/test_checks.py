@@ -111,3 +111,36 @@ def test_the_place_is_that_of_the_declaration() -> None:
     declared = Publisher(String, "chatter")
 
     assert declared.place == Place(__file__, line + 1)
+
+
+async def idle() -> None:
+    """Awaits nothing."""
+
+
+async def waiting() -> None:
+    await idle()
+
+
+async def reading(items: Any) -> None:
+    async for _ in items:
+        pass
+
+
+async def entering(lock: Any) -> None:
+    async with lock:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("fn", "way"),
+    [
+        (idle, "it awaits nothing, so write def idle"),
+        (waiting, r"await waiting\(\.\.\.\) directly"),
+        (reading, r"await reading\(\.\.\.\) directly"),
+        (entering, r"await entering\(\.\.\.\) directly"),
+    ],
+)
+def test_a_coroutine_function_for_a_thread(fn: Any, way: str) -> None:
+    """One that awaits nothing is a `def`; to await it here would block the loop."""
+    with pytest.raises(DeclarationError, match=way):
+        checks.check_plain(fn, "offload")
