@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from pathlib import Path
 
@@ -28,6 +29,11 @@ LIMIT = START_LIMIT + 2 * STOP_LIMIT
 LAST_LINES = 20
 """Lines of a node's log that `status` shows."""
 POLL = 0.05
+"""Seconds between two looks at a graph."""
+POLL_EMPTY = 0.25
+"""The same while no graph is running, which takes more work to find out."""
+SAID_AFTER = 2.0
+"""Seconds without a graph after which `wait` says what it waits for."""
 OVER = ("failed", "given_up", "ended")
 """States that a node leaves only by command."""
 
@@ -122,10 +128,14 @@ def _wait_for(
 ) -> tuple[list[NodeRow], int, str]:
     """Wait for nodes; return their rows, the exit code and, unless it is 0, the reason."""
     deadline = time.monotonic() + timeout
+    silent_until = time.monotonic() + SAID_AFTER
     while True:
         rows = _rows_if_any(graph)
         if rows is None and ended:
             return [], exits.OK, ""
+        if rows is None and time.monotonic() > silent_until:
+            silent_until = math.inf
+            output.talk(f"{_not_there()}; waiting for one for {timeout:g} s")
         wanted = _select(nodes, rows, "wait", graph) if rows is not None else []
         failed = [row for row in wanted if row["state"] in ("failed", "given_up")]
         if failed and not ended:
@@ -137,7 +147,7 @@ def _wait_for(
         if time.monotonic() > deadline:
             left = ", ".join(f"{row['node']} is {row['state']}" for row in wanted if row["state"] not in good)
             return wanted, exits.TIMEOUT, f"after {timeout:g} s {left or _not_there()}"
-        time.sleep(POLL)
+        time.sleep(POLL_EMPTY if rows is None else POLL)
 
 
 def _not_there() -> str:

@@ -5,9 +5,13 @@ from __future__ import annotations
 import json
 import os
 import signal
+from unittest.mock import Mock
 
 import pytest
 
+from graphflow.cli import exits
+from graphflow.cli.graphs import nodes
+from graphflow.errors import SupervisorError
 from tests.cases import slow
 from tests.conftest import Machine, alive
 from tests.supervisor.running import GOOD, make_project, rows, write
@@ -118,6 +122,16 @@ def test_waiting_for_nothing(machine: Machine) -> None:
     """Without a graph, `wait` waits for one to start; with `--ended`, all nodes have ended already."""
     assert "after 0.1 s no graph is running" in machine.look("wait", "--timeout", "0.1", code=4)
     machine.look("wait", "--ended")
+
+
+def test_a_long_wait_is_explained(
+    machine: Machine, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Once, after a while."""
+    monkeypatch.setattr(nodes, "SAID_AFTER", 0.0)
+    monkeypatch.setattr(nodes, "choose", Mock(side_effect=SupervisorError("nothing", exits.NOT_RUNNING)))
+    assert nodes._wait_for((), None, 0.6, ended=False)[1] == exits.TIMEOUT
+    assert capsys.readouterr().err == "no graph is running; waiting for one for 0.6 s\n"
 
 
 def test_some_lines_of_logs(standing: Machine) -> None:
