@@ -98,7 +98,7 @@ def _more_runs(edge: Edge, queue: QueueView, group: GroupView, graph: WaitGraph)
             yield _larger(group, limit, graph)
     elif queue.label.startswith("action "):
         yield _text("let several goals run at a time:", f"policy='parallel' where {queue.handler} is declared")
-    elif not isinstance(edge.via, SetBy):
+    elif not isinstance(edge.via, SetBy) or not edge.via.is_held:
         own = f"{queue.handler}_group"
         made = [f"{own} = Group(None),", f"and group={own} where it is declared"]
         made = made if queue.is_declared else ["group=Group(None) where it is made"]
@@ -108,11 +108,13 @@ def _more_runs(edge: Edge, queue: QueueView, group: GroupView, graph: WaitGraph)
 def _apart_from_the_lock(lock: str, holder: ActivityView) -> Iterator[str]:
     """Yield the remedy for a lock whose holder waits: hold it for less code, or always take locks in one order."""
     wait, other = "await" if holder.is_async else "wait", holder.wait
-    if isinstance(other, SetBy) and other.is_held and not holder.is_async:
-        if other.what == lock:
-            yield _text(f"let {lock} be a threading.RLock(), which can be entered again from within")
-        else:
+    if isinstance(other, SetBy) and other.is_held:
+        if other.what != lock:
             yield _text(f"take {lock} and {other.what} in the same order everywhere")
+        elif holder.is_async:
+            yield _text(f"do not take {lock} again in {holder.line}:", "asyncio's locks cannot be entered twice")
+        else:
+            yield _text(f"let {lock} be a threading.RLock(), which can be entered again from within")
         return
     yield _text(f"move the {wait} in {holder.line}", f"to where it does not hold {lock}")
 

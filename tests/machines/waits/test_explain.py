@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -302,6 +303,19 @@ def test_a_lock_that_is_held() -> None:
     assert "  move the await in b.py:7 to where it does not hold self.lock" in lines
 
 
+@pytest.mark.parametrize("is_async", [True, False])
+def test_a_lock_of_two(is_async: bool) -> None:
+    """Each holds one and waits for the other: the order is at fault. One that holds it itself takes it twice."""
+    first = replace(TICK, id="a", wait=SetBy("self.left", (), ("b",), is_held=True), holds=(), is_async=is_async)
+    second = replace(first, id="b", label="task run", wait=SetBy("self.right", (), ("a",), is_held=True))
+    told = "\n".join(report(first, second, MOTION))
+    assert re.search(r"  take self\.(left|right) and self\.(left|right) in the same order everywhere", told)
+    alone = replace(first, wait=SetBy("self.left", (), ("a",), is_held=True))
+    again = "do not take self.left again in arm.py:12: asyncio's locks cannot be entered twice"
+    within = "let self.left be a threading.RLock(), which can be entered again from within"
+    assert report(alone, MOTION)[-1] == f"  {again if is_async else within}"
+
+
 def test_a_blocked_loop() -> None:
     """Nothing arrives; to await, or to have the handler block a thread, ends it."""
     lines = report(replace(TICK, is_async=False), MOTION, ADD, blocked="tick")
@@ -386,6 +400,13 @@ def fixes(activity: ActivityView, group: GroupView, queue: QueueView) -> list[st
             replace(ADD, is_declared=False),
             ["  let several runs of add overlap: group=Group(None) where it is made"],
             id="a handler alone that is made while the node runs",
+        ),
+        pytest.param(
+            replace(TICK, label="subscription add", wait=SetBy("self.stop", ("q",))),
+            replace(MOTION, name=""),
+            replace(ADD, label="subscription add", calls=()),
+            ["  let several runs of add overlap: add_group = Group(None), and group=add_group where it is declared"],
+            id="a handler that another run of it ends",
         ),
         pytest.param(
             replace(TICK, label="action add"),
