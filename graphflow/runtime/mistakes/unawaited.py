@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import linecache
 import logging
+import re
 import sys
 import warnings
 from collections.abc import Coroutine
@@ -66,13 +67,27 @@ def forgotten_in(code: CodeType) -> str:
 
 def _origin(coroutine: Any, ended_in: FrameType | None) -> tuple[str, str]:
     """Return the place that created a coroutine, as `file:line`, and its source line; "" if unknown."""
+    name = getattr(coroutine, "__name__", "")
     for file, line, _ in coroutine.cr_origin or ():
         if is_users(file):
-            return f"{file}:{line}", linecache.getline(file, line).strip()
+            return f"{file}:{line}", _call_in(linecache.getline(file, line).strip(), name)
     # A coroutine that is not stored ends on the line that created it.
     frame = innermost(stack_from(ended_in))
     if frame is None:
         return "", ""
     text = linecache.getline(frame.f_code.co_filename, frame.f_lineno).strip()
-    name = getattr(coroutine, "__name__", "")
-    return (f"{frame.f_code.co_filename}:{frame.f_lineno}", text) if f"{name}(" in text else ("", "")
+    place = f"{frame.f_code.co_filename}:{frame.f_lineno}"
+    return (place, _call_in(text, name)) if f"{name}(" in text else ("", "")
+
+
+def _call_in(line: str, name: str) -> str:
+    """Return the call of a function in a line; the line itself where it begins a block, or the call goes on below."""
+    found = re.search(rf"[\w.]*\b{name}\(", line)
+    if found is None or line.startswith("async with "):
+        return line
+    depth = 0
+    for place in range(found.end() - 1, len(line)):
+        depth += {"(": 1, ")": -1}.get(line[place], 0)
+        if not depth:
+            return line[found.start() : place + 1]
+    return line

@@ -55,6 +55,21 @@ def test_the_functions_that_lack_it(caplog: pytest.LogCaptureFixture) -> None:
     assert unawaited.forgotten_in(keeps.__code__) == ""
 
 
+@pytest.mark.parametrize(
+    ("line", "call"),
+    [
+        ("show(self.adder.go(add(1), (2)))", "self.adder.go(add(1), (2))"),
+        ("while not self.go(1.0):", "self.go(1.0)"),
+        ("total = go(", "total = go("),
+        ("async with self.goals.go(x):", "async with self.goals.go(x):"),
+        ("self.ergo(1)", "self.ergo(1)"),
+    ],
+)
+def test_the_call_in_a_line(line: str, call: str) -> None:
+    """Only the call lacks its await; where it is not the whole of one, the line is shown."""
+    assert unawaited._call_in(line, "go") == call
+
+
 def test_a_coroutine_that_was_kept(caplog: pytest.LogCaptureFixture) -> None:
     """Its line is known from the second time on."""
     keeps()
@@ -62,7 +77,7 @@ def test_a_coroutine_that_was_kept(caplog: pytest.LogCaptureFixture) -> None:
         "a call of go did nothing, since it was not awaited; if it happens again, its line will be logged"
     ]
     keeps()
-    assert f"{__file__}:{inspect.getsourcelines(keeps)[1] + 1}: `kept = go()` does nothing" in caplog.messages[1]
+    assert f"{__file__}:{inspect.getsourcelines(keeps)[1] + 1}: `go()` does nothing" in caplog.messages[1]
 
 
 def test_a_coroutine_that_ends_where_no_python_runs(monkeypatch: pytest.MonkeyPatch) -> None:
