@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable, Iterable
 
 from graphflow.analysis.user_code import users_frame
 from graphflow.errors import Place
-from graphflow.runtime.callables import name_of, written_at
+from graphflow.runtime.callables import name_of
 from graphflow.runtime.declarations.handlers import MARK
 from graphflow.runtime.part import Host, Part
 
@@ -74,8 +74,7 @@ def warn_duplicate(host: Host, parts: Iterable[Part], made: Part, callback: Call
     is_timer = not hasattr(made, "type_name")  # the other timer may be cancelled
     if callback is None or is_timer or getattr(callback, MARK, None) is not None:
         return
-    for other in parts:
-        if type(other) is type(made) and other.calls == made.calls:
-            text = "%s calls %s (%s) twice for each message: keep one"
-            host.log.warning(text, _name(made), name_of(callback), written_at(callback))
-            return
+    same = [other for other in parts if type(other) is type(made) and other.calls == made.calls]
+    if len(same) == 1:  # of more, each has been reported
+        again = f", since {place} creates it again" if (place := _place()) is not None else ""
+        host.log.warning("%s calls %s twice for each message%s: keep one", _name(made), name_of(callback), again)
