@@ -15,6 +15,7 @@ import re
 import sys
 import time
 from collections.abc import Callable, Coroutine, Generator, Iterator
+from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import pytest
@@ -81,13 +82,13 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
     except (Exception, pytest.fail.Exception):  # any failure of the test, reported and raised
         _report([f"{text}{_ASYNC_DEF}" for text in _forgotten()], item)
         raise
-    _raise_forgotten(_ASYNC_DEF)
+    _fail_if_forgotten(_ASYNC_DEF)
     return result
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[object]) -> Generator[None, object, object]:
-    """Add advice to the reports of AttributeErrors, as in the logs of nodes."""
+    """Add advice to reports, as in the logs of nodes, and end traces at the user's last line."""
     errors = sys.modules.get("graphflow.runtime.mistakes.errors.attribute_errors")
     if call.excinfo is not None and errors is not None:
         errors.explain(call.excinfo.value)
@@ -96,10 +97,28 @@ def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[object]) 
 
             if remark := remark_on(call.excinfo.value):
                 call.excinfo.value.add_note(remark)
+            if not item.config.getoption("fulltrace", False):
+                call.excinfo = _ending_at_users_line(call.excinfo)
     if call.when == "call" and errors is not None and _is_unrun(item, call.excinfo):
         text = f"graphflow runs async tests that use its fixture: write async def {item.name}(graph)"
         item.add_report_section("call", "graphflow", text)
     return (yield)
+
+
+def _ending_at_users_line(error: pytest.ExceptionInfo[BaseException]) -> pytest.ExceptionInfo[BaseException]:
+    """Drop the frames below the user's last line from an error that graphflow raised, or a time limit."""
+    from graphflow.analysis.user_code import is_refusal, is_users_frame, parts_of
+    from graphflow.errors import GraphflowError
+
+    parts = list(parts_of(error.tb))
+    own = [place for place, part in enumerate(parts) if is_users_frame(part.tb_frame)]
+    if not own or not (isinstance(error.value, (GraphflowError, TimeoutError)) or is_refusal(parts[-1])):
+        return error
+    kept: TracebackType | None = None
+    for part in reversed(parts[: own[-1] + 1]):
+        kept = TracebackType(kept, part.tb_frame, part.tb_lasti, part.tb_lineno)
+    assert kept is not None
+    return pytest.ExceptionInfo.from_exc_info((error.type, error.value.with_traceback(kept), kept))
 
 
 def _is_unrun(item: pytest.Item, error: pytest.ExceptionInfo[BaseException] | None) -> bool:
@@ -162,7 +181,7 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                     if graph is not None:
                         graph.raise_failed()
                         await asyncio.sleep(0)  # lets new tasks start
-                        _raise_forgotten()
+                        _fail_if_forgotten()
                         _warn_of_misspelt_taps(item, graph)
                 except (Exception, pytest.fail.Exception) as error:  # any failure of the test, reported and raised
                     if graph is not None and graph.loop is loop and not _is_of_a_line(error):
@@ -176,7 +195,8 @@ def _limited(item: pytest.Function, test: Test) -> Test:
         except TimeoutError as error:
             ended = error.__cause__ or error.__context__  # Python 3.11.3 and later set the cause
             if isinstance(ended, asyncio.CancelledError):
-                raise TimeoutError(_too_long(ended, time.monotonic() - began, waits)) from ended
+                text = _too_long(ended, time.monotonic() - began, waits)
+                raise TimeoutError(text).with_traceback(ended.__traceback__) from None
             raise
         finally:
             # Closes an example's own graph, and the fixture's too, whose loop another plugin may close before the end.
@@ -191,10 +211,10 @@ def _limit(item: pytest.Function) -> float:
     return LIMIT if mark is None else float(mark.args[0] if mark.args else mark.kwargs["timeout"])
 
 
-def _raise_forgotten(way: str = "") -> None:
+def _fail_if_forgotten(way: str = "") -> None:
     """Fail a test that has not awaited a call of its graph."""
     if found := _forgotten():
-        raise RuntimeError(f"{found[0]}{way}")
+        pytest.fail(f"{found[0]}{way}", pytrace=False)
 
 
 def _forgotten() -> list[str]:

@@ -220,8 +220,26 @@ def test_a_test_that_hangs_is_ended(pytester: pytest.Pytester, monkeypatch: pyte
 
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
-        ["*asyncio.Event().wait()  # here*", "*TimeoutError*", "*waited in *test_it.py:4*advance the clock*"]
+        ["*asyncio.Event().wait()  # here*", "E *TimeoutError*waited in *test_it.py:4*advance the clock*"]
     )
+
+
+def test_an_error_ends_at_the_tests_line(pytester: pytest.Pytester) -> None:
+    """Without the source of what it calls, unless that is asked for; a forgotten await needs no trace at all."""
+    text = """
+        async def test_it(graph):
+            assert graph.tap("a", "b").latest
+
+        async def test_forgotten(graph):
+            graph.settle()
+        """
+    result = run(pytester, text)
+    result.assert_outcomes(failed=2)
+    shown = result.stdout.str()
+    assert "checks.py" not in shown
+    assert "plugin.py" not in shown
+    result.stdout.fnmatch_lines(['> *assert graph.tap("a", "b").latest', "E *"])
+    assert "checks.py" in run(pytester, text, "--full-trace", "--tb=short").stdout.str()
 
 
 @slow
