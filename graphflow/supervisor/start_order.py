@@ -56,12 +56,16 @@ def restarted_with(name: str, strategy: str, order: Order, processes: Iterable[s
 
 
 def waits(steps: Iterable[PlannedStep], processes: Iterable[Process]) -> str:
-    """Return what a start waits for, as in `it waits for step late, 30 s, and /camera`.
+    """Return what a start waits for, as in `it waits for step late, 30 s, and /camera; /arm starts after that`.
 
     Args:
         steps: The steps that are being carried out.
     """
+    processes = list(processes)
     found = [f"step {step.name}, {step.timeout:g} s" if step.do == "delay" else f"step {step.name}" for step in steps]
     found += [name for p in processes if p.state is State.STARTING for name in sorted(p.waiting_for)]
     more = [f"{len(found) - NAMED} more"] if len(found) > NAMED else []
-    return f"it waits for {', and '.join([*found[:NAMED], *more])}"
+    later = [node.name for p in processes if p.state is State.PENDING for node in p.nodes]
+    names = ", ".join([*later[:NAMED], *([f"{len(later) - NAMED} more"] if len(later) > NAMED else [])])
+    after = f"; {names} start{'s' * (len(later) == 1)} after that" if later else ""
+    return f"it waits for {', and '.join([*found[:NAMED], *more])}{after}"

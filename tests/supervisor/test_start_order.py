@@ -68,5 +68,10 @@ steps:
     processes = [Process(name, nodes, "log") for name, nodes in plan.processes().items()]
     for process in processes[:2]:
         process.state = State.STARTING
-    assert waits(plan.steps[:1], processes) == "it waits for step late, 30 s, and /a, and /b"
-    assert waits(plan.steps, processes) == "it waits for step late, 30 s, and step reset, and /a, and 1 more"
+    assert waits(plan.steps[:1], processes) == "it waits for step late, 30 s, and /a, and /b; /c starts after that"
+    told = "it waits for step late, 30 s, and step reset, and /a, and 1 more; /c starts after that"
+    assert waits(plan.steps, processes) == told
+    assert waits([], processes[:2]) == "it waits for /a, and /b"
+    for process in processes[1:]:
+        process.state = State.PENDING
+    assert waits([], [*processes, *processes[1:]]) == "it waits for /a; /b, /c, /b, 1 more start after that"
