@@ -122,7 +122,7 @@ class Player:
         self._topics = dict(self._chosen())
         self._publishers: dict[str, RawPublisher] = {}
         if not self._topics:
-            why = "; ".join(self.refused or self.absent) or f"it has {', '.join(bag.contents.topics) or 'none'}"
+            why = "; ".join(self.refused or self.absent) or f"its topics: {', '.join(bag.contents.topics) or 'none'}"
             raise BagError(f"{bag.path}: there is nothing to play: {why}")
         self._check_types()
         check_messages([bag], self._topics, (), *self._span)

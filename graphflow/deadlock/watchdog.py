@@ -36,7 +36,7 @@ LOOKS, TOO_MANY = 10, 7
 """Checks in a row, and the number of them that must find the loop blocked to be reported, if each block is shorter."""
 STACK_SHOWN = 6
 """Lines of the stack in a report, from the user's code inwards."""
-_REMEDY = "Await what takes long, or move it to a thread: thread=True, or await self.offload(...)"
+_REMEDY = "Await the slow part, or move it to a thread: thread=True, or await self.offload(...)"
 _HELD = "it was stopped, C code held it, or the machine is overloaded"
 _NOTHING_RUNS = "nothing else in this process can run."
 _LOCKED = re.compile(r"(?:^with\s+|^)(?P<name>\w+(?:\.\w+)*)(?:\.acquire\(|\s*:)")
@@ -168,7 +168,7 @@ class Watchdog:
         most = max(blocked, key=blocked.count)
         if most not in self._told:
             self._told.add(most)
-            text = "the event loop was blocked at %d of %d looks, for up to %.1f s at a time, mostly in %s: %s"
+            text = "the event loop was blocked in %d of %d checks, for up to %.1f s at a time, mostly in %s: %s"
             logger.warning(text, len(blocked), LOOKS, longest, most, _REMEDY)
 
     def _place(self) -> str:

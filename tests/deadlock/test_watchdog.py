@@ -187,7 +187,7 @@ async def test_many_short_blocks(
     monkeypatch.setattr(module, "REPORT_AFTER", LIMIT)
 
     def told() -> list[str]:
-        return [r.message for r in caplog.records if "the event loop was blocked at 7 of 10 looks" in r.message]
+        return [r.message for r in caplog.records if "the event loop was blocked in 7 of 10 checks" in r.message]
 
     watched.watchdog.longest = 1e6  # of a block before, which was told then
     watched.watchdog.start()
@@ -201,7 +201,7 @@ async def test_many_short_blocks(
             """It was told more than once that this block lasts."""
     [text] = told()
     assert f"mostly in {__file__}:" in text
-    assert "in block: Await what takes long" in text
+    assert "in block: Await the slow part" in text
     assert "1000000.0 s" not in text
 
 

@@ -76,8 +76,8 @@ class Losses:
                 return
             self._has_warned_of_loss = True
             self._host.log.warning(
-                "%s: most messages are lost, %d of %d so far: they come faster than they are %s. %s%s; graphflow "
-                "doctor goes on counting",
+                "%s: most messages are lost, %d of %d so far: they come faster than they are %s. %s%s; later "
+                "losses are counted by graphflow doctor",
                 *(self._label, dropped, received, handled, way, where),
             )
 

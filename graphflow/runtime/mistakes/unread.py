@@ -55,7 +55,7 @@ def unread(arguments: Sequence[str], classes: Sequence[type[Node]], *, is_own_pr
         return f"nothing reads the option {name!r}; write {way.replace('VALUE', value)}"
     for cls in classes:
         if argument == cls.__name__:
-            return f"{argument} is a class, and no argument; write graphflow run {cls.__module__}:{argument}"
+            return f"{argument} is a class, not an argument; write graphflow run {cls.__module__}:{argument}"
     near = nearest(name.lstrip("-").replace("-", "_"), known)
     way = f"; to set the parameter write -p {near}:={value}" if near else ""
     if not way and known:

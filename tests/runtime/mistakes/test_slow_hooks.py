@@ -18,8 +18,8 @@ from graphflow.testing import Graph
 @pytest.mark.parametrize(
     ("hook", "then"),
     [
-        ("on_start", "this node's handlers start when it has"),
-        ("on_activate", "this node's handlers start when it has"),
+        ("on_start", "no handler of this node runs until it returns"),
+        ("on_activate", "no handler of this node runs until it returns"),
         ("on_deactivate", "until then, the node can make no other transition"),
     ],
 )

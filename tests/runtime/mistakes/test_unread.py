@@ -53,7 +53,7 @@ def talk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
     ("words", "told"),
     [
         ([], ""),
-        (["Talk"], "Talk is a class, and no argument; write graphflow run talk:Talk"),
+        (["Talk"], "Talk is a class, not an argument; write graphflow run talk:Talk"),
         (["--rate", "1.0"], "nothing reads the option '--rate'; to set the parameter write -p rate:=1.0"),
         (["--rate=1.0"], "nothing reads the option '--rate=1.0'; to set the parameter write -p rate:=1.0"),
         (["rate=1.0"], "nothing reads the argument 'rate=1.0'; to set the parameter write -p rate:=1.0"),

@@ -23,16 +23,16 @@ def _without_pause(loop: ast.While) -> Iterator[tuple[int, str]]:
     match loop.body:
         case [ast.Expr(value=ast.Await(value=ast.Call(func=ast.Attribute(attr="sleep") as sleep, args=[time])))]:
             if _number(time) == 0:
-                text = "this loop turns without a pause and takes a whole core"
+                text = "this loop never pauses, and takes a whole core"
                 way = f"write await {ast.unparse(sleep)}(0.05), or await an asyncio.Event that the handler sets"
                 yield loop.lineno, f"{text}; {way}"
         case [ast.Expr(value=ast.Call(func=function) as call)] if last_name(function) == "spin_once":
             given = [*call.args[1:], *(k.value for k in call.keywords if k.arg == "timeout_sec")]
             if any(_number(time) == 0 for time in given):
-                text = "this loop turns without a pause and takes a whole core"
+                text = "this loop never pauses, and takes a whole core"
                 yield loop.lineno, f"{text}; leave out timeout_sec, so that spin_once waits for a callback"
         case [ast.Pass()] if _only_reads(loop.test):
-            text = "this loop turns without a pause, and nothing else runs in its thread"
+            text = "this loop never pauses, and nothing else runs in its thread"
             yield loop.lineno, f"{text}; wait with an event"
 
 
