@@ -1,5 +1,7 @@
 """Waits for what nothing ends: an Event that is never set, a Queue that nothing fills, a flag that stays as it is.
 
+Also loops over a subscription in a handler, which keep it from running again, and workers that take one item only.
+
 At run time they look like waits for an event from outside. Where other code may reach the attribute, nothing is said.
 """
 
@@ -13,7 +15,8 @@ from typing import NamedTuple
 
 from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.class_source import ClassSource, Unknown
-from graphflow.analysis.syntax import last_name, nodes_in, walk
+from graphflow.analysis.syntax import LOOPS, FunctionNode, last_name, nodes_in, walk
+from graphflow.runtime.declarations.declare import Subscription
 
 
 class _Kind(NamedTuple):
@@ -33,7 +36,10 @@ _KINDS = {
     "Event": _Kind("wait", "set()", "sets", frozenset({"wait", "is_set", "clear"})),
     "Queue": _Kind("get", "put(...)", "puts anything into", frozenset({"get", "empty", "qsize", "full", "task_done"})),
     "Lock": _Kind("acquire", "release()", "releases", frozenset({"acquire", "locked"})),
+    "create_future": _Kind("", "set_result(...)", "ends", frozenset({"done", "result", "exception", "cancelled"})),
 }
+_REPEATED = {"timer", "subscription", "service"}
+"""Decorators of methods that run again and again."""
 _MISSING = object()
 
 
@@ -61,7 +67,21 @@ def _waits(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str, str]
     with suppress(Unknown):
         source = ClassSource.of(cls)
         for node, parents in walk(definition):
+            handler = _decorators(next((p for p in parents if isinstance(p, FunctionNode)), None))
             match node:
+                case ast.Await(value=ast.Attribute() as thing) if is_own(thing) and not _is_limited(parents):
+                    if text := _of_object(source, thing.attr, ""):
+                        yield node.lineno, thing.attr, f"{cls.__name__} waits for self.{thing.attr}, and {text}"
+                case ast.AsyncFor(iter=ast.Attribute() as thing) if is_own(thing) and handler & _REPEATED:
+                    if isinstance(inspect.getattr_static(cls, thing.attr, None), Subscription) and not _may_leave(node):
+                        text = f"this loop never ends, so that the {' '.join(handler & _REPEATED)} runs once"
+                        yield node.lineno, thing.attr, f"{text}: read self.{thing.attr} in a method with @task"
+                case ast.Await(
+                    value=ast.Call(func=ast.Attribute(value=ast.Attribute() as thing, attr="get"), args=[])
+                ) if is_own(thing) and "task" in handler and not any(isinstance(p, LOOPS) for p in parents):
+                    if _is_filled_again(definition, source, thing.attr):
+                        text = f"this task takes one item of self.{thing.attr} and ends"
+                        yield node.lineno, thing.attr, f"{text}; for all of them, write while True: around it"
                 case ast.Call(func=ast.Attribute(value=ast.Attribute() as thing, attr=method), args=[], keywords=[]):
                     if is_own(thing) and _is_unbounded(parents) and (text := _of_object(source, thing.attr, method)):
                         yield node.lineno, thing.attr, f"{cls.__name__} waits for self.{thing.attr}, and {text}"
@@ -74,7 +94,29 @@ def _waits(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str, str]
 
 def _is_unbounded(parents: Sequence[ast.AST]) -> bool:
     """Whether a call is a wait without a limit: a statement or an awaited value, outside of any `timeout`."""
-    return isinstance(parents[-1], (ast.Await, ast.Expr)) and not any(isinstance(p, ast.AsyncWith) for p in parents)
+    return isinstance(parents[-1], (ast.Await, ast.Expr)) and not _is_limited(parents)
+
+
+def _is_limited(parents: Sequence[ast.AST]) -> bool:
+    return any(isinstance(parent, ast.AsyncWith) for parent in parents)
+
+
+def _decorators(method: FunctionNode | None) -> set[str]:
+    found = method.decorator_list if method is not None else []
+    return {last_name(d.func if isinstance(d, ast.Call) else d) for d in found}
+
+
+def _is_filled_again(definition: ast.ClassDef, source: ClassSource, name: str) -> bool:
+    """Whether handlers that run again and again put items into a queue that one line takes from."""
+    uses = source.uses(name)
+    values = [use.value for use in uses if use.kind == "assigned"]
+    if [last_name(v.func) if isinstance(v, ast.Call) else "" for v in values] != ["Queue"] or source.foreign(name):
+        return False
+    again = {m.name for m in definition.body if isinstance(m, FunctionNode) and _decorators(m) & _REPEATED}
+    others = [use for use in uses if use.kind != "assigned"]
+    taken = [use for use in others if use.name in ("get", "get_nowait")]
+    filled = [use for use in others if use.name in ("put", "put_nowait") and use.method in again]
+    return len(taken) == 1 and bool(filled) and all(use.kind == "called" for use in others)
 
 
 def _of_object(source: ClassSource, name: str, method: str) -> str:
@@ -85,7 +127,7 @@ def _of_object(source: ClassSource, name: str, method: str) -> str:
     kind = _KINDS.get(made.pop()) if len(made) == 1 else None
     if kind is None or method != kind.waits or source.foreign(name):
         return ""
-    others = [use for use in uses if use.kind != "assigned"]
+    others = [use for use in uses if use.kind not in ("assigned", *(() if method else ("read",)))]
     if any(use.kind != "called" or use.name not in kind.harmless for use in others):
         return ""
     return f"nothing {kind.does} it; call self.{name}.{kind.ends} in another handler"
@@ -120,5 +162,5 @@ def _value(expression: ast.expr | None) -> object:
     return expression.value if isinstance(expression, ast.Constant) else _MISSING
 
 
-def _may_leave(loop: ast.While) -> bool:
+def _may_leave(loop: ast.While | ast.AsyncFor) -> bool:
     return any(isinstance(node, (ast.Break, ast.Return, ast.Raise)) for node in nodes_in(loop))

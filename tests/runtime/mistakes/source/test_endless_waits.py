@@ -15,12 +15,13 @@ from graphflow.runtime.mistakes.source.shadowing import definition_of
 
 HEAD = """\
 import asyncio, threading
-from graphflow import Node, Param, subscription, timer
+from graphflow import Node, Param, Subscription, subscription, task, timer
 from graphflow.msgs.std_msgs.msg import String
 
 class Robot(Node):
     pose = None
     is_on = Param(False)
+    words = Subscription(String, "words")
 
     def __init__(self):
         super().__init__("robot")
@@ -30,6 +31,8 @@ class Robot(Node):
         self.lock = asyncio.Lock()
         self.gate = threading.Event()
         self.done = False
+        self.answer = None
+        self.items = asyncio.Queue(maxsize=1)
 
     @timer(1.0)
     async def go(self):
@@ -76,6 +79,14 @@ def told(tmp_path: Path) -> Iterator[Told]:
         ("while self.pose is None: await self.clock.sleep(0.1)", "nothing in Robot sets it to anything but None"),
         ("while not self.done: await self.clock.sleep(0.1)", "nothing in Robot sets it to anything but False"),
         ("while not self.pose: await self.clock.sleep(0.1)", "nothing in Robot sets it to anything but False"),
+        (
+            "self.answer = asyncio.get_running_loop().create_future(); await self.answer",
+            "Robot waits for self.answer, and nothing ends it; call self.answer.set_result(...) in another handler",
+        ),
+        (
+            "async for word in self.words: print(word)",
+            "this loop never ends, so that the timer runs once: read self.words in a method with @task",
+        ),
     ],
 )
 def test_waits_without_an_end(told: Told, wait: str, text: str) -> None:
@@ -102,6 +113,13 @@ def test_waits_without_an_end(told: Told, wait: str, text: str) -> None:
         ("await self.event.wait()", "pass", "class Sub(Robot):\n    def f(self): self.event.set()"),
         ("print(await self.queue.get())", "self.queue.put_nowait(message)", ""),
         ("await self.lock.acquire()", "self.lock.release()", ""),
+        ("self.answer = asyncio.Future(); await self.answer", "self.answer.set_result(1)", ""),
+        ("self.answer = self.loop.create_future(); await self.answer", "self.answer.cancel()", ""),
+        ("self.answer = self.loop.create_future(); await self.answer", "keep(self.answer)", "def keep(f): ..."),
+        ("self.answer = self.work(); await self.answer", "pass", ""),
+        ("async with self.lock: await self.answer", "self.answer = self.loop.create_future()", ""),
+        ("async for word in self.words: break", "pass", ""),
+        ("async for word in self.other: print(word)", "pass", ""),
     ],
 )
 def test_waits_that_may_end(told: Told, wait: str, other: str, more: str) -> None:
@@ -148,3 +166,33 @@ def test_loops_that_may_end(told: Told, end: str) -> None:
     """In another way than by their flag."""
     wait = f"while not self.done:\n            if self.there: {end}\n            await self.clock.sleep(0.1)"
     assert told(wait) == []
+
+
+WORKER = """
+    @task
+    async def work(self):
+        {}
+"""
+
+
+def test_a_worker_that_takes_one_item(told: Told) -> None:
+    """Handlers go on to fill the queue, and one that is full keeps them waiting."""
+    worker = WORKER.format("print(await self.items.get())")
+    text = "this task takes one item of self.items and ends; for all of them, write while True: around it"
+    assert told("await self.items.put(1)", more=worker) == [text]
+    assert told("self.items.put_nowait(1)", more=worker) == [text]
+
+
+@pytest.mark.parametrize(
+    ("wait", "line", "other"),
+    [
+        ("await self.items.put(1)", "while True: print(await self.items.get())", "pass"),
+        ("await self.items.put(1)", "print(await self.items.get())", "self.items.get_nowait()"),
+        ("await self.items.put(1)", "print(await self.items.get())", "keep(self.items)"),
+        ("pass", "await self.items.put(2); print(await self.items.get())", "pass"),
+        ("await self.items.put(1)", "print(await self.items.get())", "self.items = Store()"),
+    ],
+)
+def test_workers_that_take_all(told: Told, wait: str, line: str, other: str) -> None:
+    """Or others do, or nothing fills the queue again."""
+    assert told(wait, other, WORKER.format(line)) == []
