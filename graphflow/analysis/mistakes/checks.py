@@ -10,6 +10,7 @@ from typing import Final, TypeAlias
 from graphflow.analysis.mistakes.calls.busy_loops import busy_loops
 from graphflow.analysis.mistakes.calls.called_early import results_passed
 from graphflow.analysis.mistakes.calls.defined_twice import defined_twice
+from graphflow.analysis.mistakes.calls.kept_locks import kept_locks
 from graphflow.analysis.mistakes.calls.single_transforms import single_transforms
 from graphflow.analysis.mistakes.units.contrary_names import contrary_names
 from graphflow.analysis.mistakes.units.literal_units import literal_units
@@ -39,6 +40,7 @@ IN_CODE: Final[tuple[Callable[[ast.AST], Found], ...]] = (
     reused_objects,
     angles_as_quaternions,
     busy_loops,
+    kept_locks,
     lone_nanoseconds,
     single_transforms,
     unformatted,
