@@ -26,6 +26,8 @@ from graphflow.markup.source import Source
 from graphflow.names import did_you_mean, nearest
 
 PARAMETERS = "ros__parameters"
+_RUNS = {"class", "pkg", "command", "template"}
+"""Keys of a node in a graph file."""
 
 
 class Section(NamedTuple):
@@ -139,6 +141,10 @@ def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
 
     if not isinstance(src.data, dict):
         problems.append(Problem(src.place(()), f"a parameter file is a mapping: NODE: {{{PARAMETERS}: ...}}"))
+        return
+    nodes = src.data.get("nodes")
+    if isinstance(nodes, dict) and any(isinstance(n, dict) and not _RUNS.isdisjoint(n) for n in nodes.values()):
+        problems.append(Problem(src.key_place(("nodes",)), f"this is a graph file: graphflow up {src.file}"))
         return
     yield from walk(src.data, ())
 

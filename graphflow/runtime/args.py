@@ -232,7 +232,9 @@ def _option(result: RosArgs, option: str, value: str) -> None:
     else:
         target, arrow, text = value.partition(":=")
         if not arrow or not target:
-            raise GraphflowError(f"-p {value!r}: write name:=value, for example rate:=2.0")
+            slip = re.fullmatch(r"([A-Za-z_][\w.]*)\s*[=:]\s*(\S+)", value)
+            way = f"{slip[1]}:={slip[2]}" if slip is not None else "name:=value, for example rate:=2.0"
+            raise GraphflowError(f"-p {value!r}: write {way}")
         if not text:
             raise GraphflowError(f"-p {value!r}: the value is missing; write it after :=, without a space")
         if re.search(r"\s[\w.]+:=", text):

@@ -139,5 +139,7 @@ def unused_remaps(
             yield f"the remap {rule} comes too late: {former} has renamed {rule.match} already; remove one of the two"
             continue
         hint = f"; to set the parameter write {set_by}" if is_param else rule_hint(rule.match, rule.replacement, known)
+        if rule.match in (names.full_name, names.name):
+            hint = f"; to rename the node write __node:={rule.replacement.rpartition('/')[2]}"
         hint = hint or did_you_mean(rule.match, known)
         yield f"the remap {rule} matches no name of this node{hint}"

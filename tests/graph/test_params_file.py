@@ -92,6 +92,8 @@ def test_the_later_section_counts(tmp_path: Path) -> None:
     [
         ("", "p.yaml:1:1: a parameter file is a mapping: NODE: {ros__parameters: ...}"),
         ("{}", "p.yaml:1:1: the file has no section; write NODE: {ros__parameters: {rate: 2.0}}"),
+        ("nodes: {/a: {class: 'n:A'}}", "p.yaml:1:1: this is a graph file: graphflow up p.yaml"),
+        ("nodes: {a: 1}", "p.yaml:1:9: 'a': put parameters below NODE and ros__parameters"),
         ("a: 1", "p.yaml:1:1: 'a': put parameters below NODE and ros__parameters"),
         ("a:\n  rate: 1", "p.yaml:2:3: 'rate': put parameters below NODE and ros__parameters"),
         ("a:\nros__parameters:\n  x: 1", "p.yaml:2:1: 'ros__parameters' belongs below 'a': indent it and what follows"),

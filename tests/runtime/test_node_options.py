@@ -105,6 +105,8 @@ def test_a_name_that_is_insisted_on() -> None:
             "matches no name of this node; it is the other way round, from the node's name: chatter:=/out",
         ),
         ("ns:=/robot1", "matches no name of this node; did you mean __ns:=/robot1?"),
+        ("/talker:=/hi", "matches no name of this node; to rename the node write __node:=hi"),
+        ("talker:=hi", "matches no name of this node; to rename the node write __node:=hi"),
         ("rate:=fast", "matches no name of this node; to set the parameter write -p rate:=fast"),
         (
             "chatter:=news chatter:=talk",

@@ -397,7 +397,7 @@ def test_a_node_as_the_command_line_wants_it() -> None:
 @pytest.mark.parametrize(
     ("words", "code", "text"),
     [
-        (["-p", "rate=3"], 2, "error: -p 'rate=3': write name:=value"),
+        (["-p", "rate=3"], 2, "error: -p 'rate=3': write rate:=3"),
         (["--ros-args", "--log-level", "loud"], 2, "error: 'loud' is not a log level"),
         (["-p", "rate:=fast"], 2, "error: parameter 'rate' is of type double, 'fast' is not (from command line)"),
     ],
