@@ -266,9 +266,9 @@ class Workspace:
     def replaced(self) -> dict[str, Path]:
         """Source trees in the workspace, such as rclpy and tf2_ros, that graphflow's own packages replace."""
         own = os.listdir(SITE)
-        return {
-            name: root / name for root in self.import_roots for name in own if (root / name / "__init__.py").is_file()
-        }
+        sources = [folder for p in self.packages.values() for folder in (p.folder, p.folder / "src")]
+        roots = [*self.import_roots, *sources]  # the names of package and module differ, as those of tf2_ros_py
+        return {name: root / name for root in roots for name in own if (root / name / "__init__.py").is_file()}
 
     @property
     def interfaces(self) -> dict[str, Path]:

@@ -441,3 +441,15 @@ def test_variables_that_multiply(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     folder = package(tmp_path / "a", "a")
     (folder / "CMakeLists.txt").write_text("set(x 12345678)\nset(y ${x}${x}${x})\n${y}")
     assert packages.cmake_text(packages.Package("a", folder)).endswith("\n1234567812")
+
+
+@pytest.mark.parametrize(
+    ("name", "module"), [("tf2_ros_py", "tf2_ros"), ("message_filters", "src/message_filters"), ("rclpy", "rclpy")]
+)
+def test_source_trees_of_what_graphflow_has(tmp_path: Path, name: str, module: str) -> None:
+    """They are known, whatever their package is called, and wherever its modules are."""
+    package(tmp_path / name, name)
+    folder = tmp_path / name / module
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "__init__.py").touch()
+    assert find_workspace(tmp_path).replaced == {folder.name: folder}
