@@ -46,6 +46,8 @@ class TurtleSim(Node):
 
     node_name = "turtlesim"
     dynamic_names = (
+        "*/turtle1/cmd_vel",
+        "*/turtle1/pose",
         "*/?*/cmd_vel",
         "*/?*/pose",
         "*/?*/color_sensor",

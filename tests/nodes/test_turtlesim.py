@@ -73,6 +73,8 @@ def test_it_is_called_turtlesim_and_says_what_it_makes_at_run_time() -> None:
         ("~/snapshot", "std_srvs/srv/Trigger"),
     }
     assert interface.dynamic_names == (
+        "*/turtle1/cmd_vel",
+        "*/turtle1/pose",
         "*/?*/cmd_vel",
         "*/?*/pose",
         "*/?*/color_sensor",

@@ -5,7 +5,7 @@ Any of them may be intended, so they are warnings.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -68,8 +68,16 @@ def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     made = [interface.dynamic_names for interface in known]
     classes += (problem for node in plan.nodes for problem in _of_loops(node, interfaces))
     classes += _of_shared_commands(plan, interfaces)
-    found = [*_of_steps(plan, ends), *_of_nodes(ends), *odd_panes(plan.panes, _by_kind(plan, ends))]
-    return classes + [problem for name, problem in found if not any(may_make(names, name) for names in made)]
+    sure = _sure(made)
+    found = [*_of_steps(plan, ends), *_of_nodes(ends, sure), *odd_panes(plan.panes, _by_kind(plan, ends))]
+    may_exist = [name for name, _ in found if any(may_make(names, name) for names in made)]
+    return classes + [problem for name, problem in found if name not in may_exist or _nearest(name, sure)]
+
+
+def _sure(made: Iterable[bool | Sequence[str]]) -> set[str]:
+    """Return the names that nodes surely create at run time: patterns with a `*` for the namespace alone."""
+    patterns = [pattern for names in made if not isinstance(names, bool) for pattern in names]
+    return {pattern[1:] for pattern in patterns if pattern.startswith("*/") and not set(pattern[1:]) & set("*?[")}
 
 
 def _by_kind(plan: Plan, ends: list[_End]) -> dict[str, dict[str, str]]:
@@ -166,14 +174,18 @@ def _of_wait(step: PlannedStep, plan: Plan, ends: list[_End]) -> Iterator[tuple[
         yield step.target, Problem(step.target_place, f"nothing in this graph is called {step.target}{hint}")
 
 
-def _of_nodes(ends: list[_End]) -> Iterator[tuple[str, Problem]]:
-    """Yield remapped names without a counterpart, and names that differ little from one; each pair once."""
+def _of_nodes(ends: list[_End], sure: set[str]) -> Iterator[tuple[str, Problem]]:
+    """Yield remapped names without a counterpart, and names that differ little from one; each pair once.
+
+    Args:
+        sure: Names that nodes create at run time.
+    """
     reported: set[str] = set()
     for end in sorted(ends, key=lambda end: (end.remapped_at is None, end.kind not in _NEEDS_ONE)):
         others = _others(end, ends)
-        if end.name in others or end.name in _EVERYWHERE:
+        if end.name in others or end.name in sure or end.name in _EVERYWHERE:
             continue
-        near = _nearest(end.name, others - {same.name for same in ends if same.kind == end.kind})
+        near = _nearest(end.name, (others | sure) - {same.name for same in ends if same.kind == end.kind})
         if near not in reported if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:
             reported.add(end.name)
             yield end.name, Problem(end.remapped_at or end.place, _text(end, near))

@@ -75,6 +75,18 @@ def test_a_remap_to_a_name_that_nobody_has(rule: str, expected: str) -> None:
     assert told(text) == [f"g.yaml:3:{text.splitlines()[2].index(rule) + 1}: {expected}"]
 
 
+def test_names_that_a_node_creates_for_sure() -> None:
+    """A pattern with no other `*` than the namespace's is such a name, and one like it is a slip."""
+    patterns = ("*/turtle1/cmd_vel", "*/?*/cmd_vel")
+    sim = Interface("a:Sim", "sim", CODE, dynamic_names=patterns)
+    text = "nodes:\n  /s: {class: a:Sim}\n  /t: {class: a:Talker, remap: {chatter: NAME}}\n"
+    assert told(text.replace("NAME", "/turtel1/cmd_vel"), {**KNOWN, "a:Sim": sim}) == [
+        "g.yaml:3:33: no node of this graph subscribes to /turtel1/cmd_vel; did you mean '/turtle1/cmd_vel'?"
+    ]
+    for name in ("/turtle1/cmd_vel", "/turtle2/cmd_vel", "/leo/cmd_vel", "/elsewhere"):
+        assert told(text.replace("NAME", name), {**KNOWN, "a:Sim": sim}) == []
+
+
 def test_a_remap_that_joins_a_node_with_itself() -> None:
     """It is told with the two sides exchanged; other names are left alone."""
     text = "nodes:\n  /a: {class: a:Adder, remap: {/output: input}}\n"
