@@ -64,7 +64,7 @@ def _way(cls: type, method: FunctionNode, space: dict[str, object]) -> str:
         decorator = _DECORATORS.get(kind) or (_DECORATORS["message"] if arguments else "@timer(1.0)")
         return f", which looks like a handler: declare it, as with {decorator} above it"
     used = "" if arguments or method.name.startswith("_") else _used_by(method, cls)
-    return used and f", which uses self.{used}: write @timer(1.0) or @task above it"
+    return used and f", which uses self.{used}: write @timer(1.0) or @task above it, or call it"
 
 
 def _used_by(method: FunctionNode, cls: type) -> str:

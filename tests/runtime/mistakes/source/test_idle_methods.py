@@ -55,11 +55,11 @@ def told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Told:
     [
         (
             "async def drive(self):\n    self.out.publish(Int32())",
-            "nothing calls Robot.drive, which uses self.out: write @timer(1.0) or @task above it",
+            "nothing calls Robot.drive, which uses self.out: write @timer(1.0) or @task above it, or call it",
         ),
         (
             "async def command(self):\n    while True:\n        await self.ask.call()",
-            "nothing calls Robot.command, which uses self.ask: write @timer(1.0) or @task above it",
+            "nothing calls Robot.command, which uses self.ask: write @timer(1.0) or @task above it, or call it",
         ),
         (
             "async def walk(self, goal: Fibonacci.Handle):\n    return Fibonacci.Result()",
