@@ -241,7 +241,7 @@ class NodeCore:
 
         Raises:
             DeclarationError: Its `__init__` has overwritten an attribute that every node has.
-            ParameterError: There is an override for a parameter that the node does not have.
+            ParameterError: An override is for a parameter that the node does not have, or a check refuses it.
         """
         cls, own = type(self.instance).__name__, vars(self.instance)
         for attribute in (attribute for attribute, value in self._made.items() if own.get(attribute) is not value):
@@ -249,6 +249,7 @@ class NodeCore:
         check_made(self.instance)
         if unused := self.parameters.unused_overrides(type(self.instance)):
             raise ParameterError(f"node {self.full_name}: " + "; ".join(unused))
+        self._binding.check_given()
 
     # life cycle
 

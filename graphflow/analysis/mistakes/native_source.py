@@ -14,6 +14,7 @@ from graphflow.analysis.mistakes.calls.separate_groups import separate_groups
 from graphflow.analysis.mistakes.checks import IN_CODE, IN_FILES, Found
 from graphflow.analysis.mistakes.values.added_arrays import added_arrays
 from graphflow.analysis.mistakes.values.message_values import message_values
+from graphflow.analysis.mistakes.values.returning_checks import returning_checks
 from graphflow.analysis.swallowed import caught_in_vain, endless_loops
 
 _IN_CLASSES: Final[tuple[Callable[[ast.ClassDef], Found], ...]] = (
@@ -23,6 +24,7 @@ _IN_CLASSES: Final[tuple[Callable[[ast.ClassDef], Found], ...]] = (
     added_arrays,
     caught_in_vain,
     endless_loops,
+    returning_checks,
     blocking_async,
     background_work,
 )

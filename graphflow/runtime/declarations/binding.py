@@ -118,6 +118,19 @@ class Binding:
             given = ", ".join(f"{name!r} = {value!r}" for name, value in used.items())
             raise ParameterError(f"parameter {given}: {error}") from None
 
+    def check_given(self) -> None:
+        """Refuse values from outside that a check of the class does not accept; they were set before its `__init__`.
+
+        Raises:
+            ParameterError: A check refuses one; the text has the place that gives it.
+        """
+        for name in self._of_class:
+            if (source := self._parameters.source(name)) not in ("default", "node"):
+                try:
+                    self._check({name: self._parameters.get(name)})
+                except ParameterError as error:
+                    raise ParameterError(f"{error} (from {source})") from None
+
     def _check(self, values: Mapping[str, Any]) -> None:
         """Refuse values that a timer or a check of the class does not accept."""
         for rate, _ in self._timers:

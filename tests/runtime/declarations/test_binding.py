@@ -73,6 +73,22 @@ async def test_a_check_of_the_class_can_refuse(graph: Graph) -> None:
     assert (node.rate, node.told) == (1.0, [])
 
 
+async def test_a_check_of_values_from_outside(graph: Graph) -> None:
+    """They were set before `__init__`, and are checked when the node starts; a default is the class's own affair."""
+    await graph.start(Follower("slow", rate=9.0))
+    with pytest.raises(ParameterError, match=r"'rate' = 11\.0: the listener is only human \(from argument\)$"):
+        await graph.start(Follower(rate=11.0))
+
+    class Fast(Follower):
+        rate = Param(20.0)
+
+        @rate.check
+        def not_too_fast(self, rate: float) -> None:
+            raise ValueError("never")
+
+    await graph.start(Fast())
+
+
 def test_a_check_that_returns_something() -> None:
     """It is no answer, and the value is not set: a False would pass unseen."""
 
