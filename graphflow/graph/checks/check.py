@@ -228,6 +228,11 @@ def _class(interface: Interface) -> str:
 def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     names = resolver(node)
     full = {names.full(e.name): e.name for e in interface.endpoints}
+    pair = {rule.match: rule for rule in node.remaps}
+    if pair.keys() == {"from", "to"}:  # as in launch files
+        way = f"remap: {{{pair['from'].replacement}: {pair['to'].replacement}}}"
+        yield Problem(pair["from"].place, f"a remap is written as a pair: {way}")
+        return
     for rule in node.remaps:
         if not rule.is_optional and not _fits(rule.match, names, full, interface):
             help_ = did_you_mean(rule.match, full.values())

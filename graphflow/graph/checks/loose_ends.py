@@ -52,6 +52,9 @@ class _End(NamedTuple):
     type: str
     remapped_at: Place | None
     place: Place
+    given: str = ""
+    """The name before any remap."""
+    node: PlannedNode | None = None
 
 
 def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
@@ -69,7 +72,13 @@ def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     classes += (problem for node in plan.nodes for problem in _of_loops(node, interfaces))
     classes += _of_shared_commands(plan, interfaces)
     sure = _sure(made)
-    found = [*_of_steps(plan, ends), *_of_nodes(ends, sure), *odd_panes(plan.panes, _by_kind(plan, ends))]
+    of_nodes = [*_of_nodes(ends, sure)]
+    found = [
+        *_of_steps(plan, ends),
+        *of_nodes,
+        *_apart(ends, {n for n, _ in of_nodes}),
+        *odd_panes(plan.panes, _by_kind(plan, ends)),
+    ]
     may_exist = [name for name, _ in found if any(may_make(names, name) for names in made)]
     return classes + [problem for name, problem in found if name not in may_exist or _nearest(name, sure)]
 
@@ -115,7 +124,7 @@ def _ends(node: PlannedNode, interfaces: Interfaces) -> Iterator[_End]:
         kind: Kind = "topic" if endpoint.kind in ("publisher", "subscription") else "service"
         name, full = names.resolve(endpoint.name, kind), names.full(endpoint.name)
         rules = (rule.place for rule in node.remaps if name != full and names.pattern(rule.match).fullmatch(full))
-        yield _End(endpoint.kind, name, endpoint.type, next(rules, None), endpoint.place)
+        yield _End(endpoint.kind, name, endpoint.type, next(rules, None), endpoint.place, full, node)
 
 
 def _of_loops(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
@@ -189,6 +198,23 @@ def _of_nodes(ends: list[_End], sure: set[str]) -> Iterator[tuple[str, Problem]]
         if near not in reported if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:
             reported.add(end.name)
             yield end.name, Problem(end.remapped_at or end.place, _text(end, near))
+
+
+def _apart(ends: list[_End], reported: set[str]) -> Iterator[tuple[str, Problem]]:
+    """Yield subscriptions and publishers that lack the other end, and would meet but for a remap or namespace.
+
+    Args:
+        reported: Names that are left out.
+    """
+    alone = [e for e in ends if e.name not in _others(e, ends) and e.name not in (*reported, *_EVERYWHERE)]
+    for heard in alone:
+        for sent in alone if heard.kind == "subscription" else ():
+            is_alike = sent.given == heard.name or split(sent.given)[1] == split(heard.name)[1]
+            if sent.kind == "publisher" and sent.type == heard.type and is_alike and sent.node and heard.node:
+                text = f"{sent.node.name} publishes {sent.name}, and {heard.node.name} subscribes to {heard.name}"
+                way = "remap both, or neither" if sent.remapped_at else "put both in one namespace, or remap one"
+                yield heard.name, Problem(sent.remapped_at or heard.node.place, f"{text}; for them to meet, {way}")
+                break
 
 
 def _others(end: _End, ends: list[_End]) -> set[str]:

@@ -115,6 +115,7 @@ def test_what_fits_is_no_problem(line: str) -> None:
             "4:21: parameter 'turbo' is of type boolean, 'on' is not; write true: on is a text in YAML 1.2",
         ),
         ("remap: {gaol: /x}", "4:13: Chaser has no topic or service 'gaol'; did you mean 'goal'?"),
+        ("remap: {from: goal, to: /x}", "4:13: a remap is written as a pair: remap: {goal: /x}"),
         ("remap: {/goal: /x}", "4:13: Chaser has no topic or service '/goal'; did you mean 'goal'?"),
         ("concurrency: {m: [contrl]}", "4:23: Chaser has no handler 'contrl'; did you mean 'control'?"),
         ("concurrency: {m: [watch]}", "4:23: watch is a task, which runs alongside everything and is in no group"),

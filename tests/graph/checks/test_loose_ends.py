@@ -75,6 +75,38 @@ def test_a_remap_to_a_name_that_nobody_has(rule: str, expected: str) -> None:
     assert told(text) == [f"g.yaml:3:{text.splitlines()[2].index(rule) + 1}: {expected}"]
 
 
+@pytest.mark.parametrize(
+    ("talker", "listener", "expected"),
+    [
+        ("/left/t: {class: a:Talker}", "/right/l: {class: a:Listener}", "3:3"),
+        ("/t: {class: a:Talker, remap: {chatter: /talk}}", "/l: {class: a:Listener}", "2:33"),
+    ],
+)
+def test_two_that_do_not_meet(talker: str, listener: str, expected: str) -> None:
+    """They would, but for their namespaces or a remap."""
+    [text] = [text for text in told(f"nodes:\n  {talker}\n  {listener}\n") if "chatter" in text]
+    assert text.startswith(f"g.yaml:{expected}: /")
+    sent, heard = ("/left/chatter", "/right/chatter") if "left" in talker else ("/talk", "/chatter")
+    who = " and ".join(text.split("; ")[0].split(": ")[1].split(", and "))
+    names = talker.split(":")[0], listener.split(":")[0]
+    assert who == f"{names[0]} publishes {sent} and {names[1]} subscribes to {heard}"
+    way = "put both in one namespace, or remap one" if "left" in talker else "remap both, or neither"
+    assert text.endswith(f"; for them to meet, {way}")
+
+
+@pytest.mark.parametrize(
+    "nodes",
+    [
+        ("/left/t: {class: a:Talker}", "/right/t: {class: a:Talker}", "/right/l: {class: a:Listener}"),
+        ("/left/t: {class: a:Talker}", "/left/l: {class: a:Listener}", "/right/l: {class: a:Listener}"),
+        ("/left/t: {class: a:Talker}", "/right/a: {class: a:Adder}"),
+    ],
+)
+def test_others_that_meet(nodes: tuple[str, ...]) -> None:
+    """One of the two has its other end, or they have nothing in common."""
+    assert not any("for them to meet" in text for text in told("nodes:\n" + "".join(f"  {n}\n" for n in nodes)))
+
+
 def test_names_that_a_node_creates_for_sure() -> None:
     """A pattern with no other `*` than the namespace's is such a name, and one like it is a slip."""
     patterns = ("*/turtle1/cmd_vel", "*/?*/cmd_vel")
@@ -99,7 +131,7 @@ def test_a_remap_that_joins_a_node_with_itself() -> None:
 def test_a_publisher_may_have_no_listener_but_not_a_misspelt_one() -> None:
     """It is told where a subscription is spelt almost so; what nobody is near to may be meant for others."""
     text = GRAPH.replace("a:Talker", "a:Talker, remap: {chatter: /NAME}")
-    assert told(text.replace("NAME", "elsewhere")) == []
+    assert told(text.replace("NAME", "elsewhere").replace("a:Listener", "a:Numbered")) == []
     assert told(text.replace("NAME", "chater")) == [
         "g.yaml:2:33: no node of this graph subscribes to /chater; did you mean '/chatter'?"
     ]

@@ -75,9 +75,9 @@ async def test_a_check_of_the_class_can_refuse(graph: Graph) -> None:
 
 async def test_a_check_of_values_from_outside(graph: Graph) -> None:
     """They were set before `__init__`, and are checked when the node starts; a default is the class's own affair."""
-    await graph.start(Follower("slow", rate=9.0))
-    with pytest.raises(ParameterError, match=r"'rate' = 11\.0: the listener is only human \(from argument\)$"):
-        await graph.start(Follower(rate=11.0))
+    await graph.start(graph.make(Follower, "slow", rate=9.0))
+    with pytest.raises(ParameterError, match=r"'rate' = 11\.0: the listener is only human \(from graph\.make\)$"):
+        await graph.start(graph.make(Follower, rate=11.0))
 
     class Fast(Follower):
         rate = Param(20.0)
