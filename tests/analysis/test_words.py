@@ -22,6 +22,12 @@ def test_methods_are_referred_to_by_attributes_strings_and_names_in_classes() ->
     assert methods_in(ast.parse(text)) == {"read", "given", "log", "info", "once", "action", "may"}
 
 
+def test_what_a_module_has_is_no_method() -> None:
+    """Neither has the fixture of a test; an object that a module holds may have one."""
+    text = "import graphflow, os.path as paths\ngraphflow.run(Robot)\npaths.start\ngraph.stop\ngraphflow.nodes.go"
+    assert methods_in(ast.parse(text)) == {"go"}
+
+
 @pytest.mark.parametrize(
     ("text", "prefixes"),
     [

@@ -40,10 +40,13 @@ def other_modules(file: str, word: str) -> Iterator[ast.Module]:
 
 
 def is_in_other_files(file: str, word: str) -> bool:
-    """Return whether another file of the project, loaded or not, has a word as an attribute or a string."""
+    """Return whether another file of the project, loaded or not, has a word as an attribute or a string.
+
+    `graphflow.run` and a test's `graph.start` are none of a node's.
+    """
     from graphflow.workspace.project import project_root
 
-    pattern = re.compile(rf"(?:\.|[\"']){word}\b")
+    pattern = re.compile(rf"(?:(?<!\bgraphflow)(?<!\bgraph)\.|[\"']){word}\b")
     return any(
         path != file and pattern.search(lenient_text(Path(path), SIZE_BOUND))
         for path in _files(str(project_root(Path(file))))

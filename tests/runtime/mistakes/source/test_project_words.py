@@ -71,6 +71,16 @@ def test_other_files_that_nothing_has_loaded(project: Path, file: str, is_found:
     assert not is_in_other_files(str(project / "own.py"), "driv")
 
 
+@pytest.mark.parametrize("text", ["graphflow.run(Robot)", "await graph.run(Robot())"])
+def test_calls_that_are_no_methods_of_a_node(project: Path, text: str) -> None:
+    """Those of the module and of a test's graph have names that a method may have, too."""
+    write(project / "main.py", text)
+    assert not is_in_other_files(str(project / "own.py"), "run")
+    project_words._files.cache_clear()
+    write(project / "other.py", "my_graph.run()")
+    assert is_in_other_files(str(project / "own.py"), "run")
+
+
 def test_a_large_file(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file of more than the bound is not searched, and the text of a smaller one is not kept."""
     write(project / "a.py")
