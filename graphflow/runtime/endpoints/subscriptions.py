@@ -36,6 +36,7 @@ M = TypeVar("M", bound=Message)
 
 SOURCES_BOUND = 4096
 """Publishers tracked by a subscription."""
+_NEWEST = ("latest", "last", "value", "message", "msg", "get", "read", "receive")
 _NO_INFO = (0, 0, bytes(16))
 """The fields of a missing attachment, or of one with another layout."""
 
@@ -105,9 +106,9 @@ class TopicSubscription(Endpoint, Generic[M]):
         return self._callback, self.name
 
     def _hint(self, name: str) -> str:
-        if name not in {field.name for field in self.type.SCHEMA.fields}:
-            return ""
-        return "a message has it: async for message in the subscription, or @subscription on a method that takes one"
+        if name in {field.name for field in self.type.SCHEMA.fields}:
+            return "a message has it: async for message in the subscription, or a method with @subscription"
+        return "keep it in a method with @subscription, as self.latest = message" if name in _NEWEST else ""
 
     def _open(self, key: str) -> None:
         context = self.host.context

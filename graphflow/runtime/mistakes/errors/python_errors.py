@@ -66,9 +66,19 @@ REMARKS = (
     ),
     Remark("'(async_generator|TopicSubscription)' object is not iterable", r"\bfor\b", "write async for"),
     Remark(
-        "'HandlerGroup' object does not support",
+        "'(Handler)?Group' object does not support",
         r"\bwith self\.(?P<name>\w+)",
         "handlers name the group that they share: @timer(1.0, group={name})",
+    ),
+    Remark(
+        "'(Handler)?Group' object has no attribute '(acquire|release|locked)'",
+        r"self\.(?P<name>\w+)\.",
+        "handlers name the group that they share: @timer(1.0, group={name})",
+    ),
+    Remark(
+        "'async for' requires .* got Subscription$",
+        r"\bin self\.(?P<name>\w+)",
+        "a Subscription is declared in the body of the class: {name} = Subscription(...)",
     ),
     Remark(
         "'coroutine' object does not support the asynchronous context",

@@ -163,6 +163,13 @@ def test_operands(monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark:
         ("'X' object does not support the context manager protocol", "with self.clock.timeout(1.0):", WITH),
         ("'HandlerGroup' object does not support the context manager protocol", "with self.motion:", GROUP),
         ("'HandlerGroup' object does not support the asynchronous context", "async with self.motion:", GROUP),
+        ("'Group' object does not support the asynchronous context manager", "async with self.motion:", GROUP),
+        ("'HandlerGroup' object has no attribute 'acquire'", "await self.motion.acquire()", GROUP),
+        (
+            "'async for' requires an object with __aiter__ method, got Subscription",
+            "async for n in self.scan:",
+            "a Subscription is declared in the body of the class: scan = Subscription(...)",
+        ),
         (
             "'coroutine' object does not support the asynchronous context manager protocol",
             "async with self.fib.send_goal(goal) as sent:",
