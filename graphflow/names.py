@@ -51,7 +51,9 @@ def rule_hint(match: str, replacement: str, known: Collection[str]) -> str:
     """
     if match in _KEYS:
         return f"; did you mean {_KEYS[match]}:={replacement}?"
-    if nearest(match, known) is None and (replacement in known or f"/{replacement}" in known):
+    is_known = replacement in known or f"/{replacement}" in known
+    is_alike = match.rpartition("/")[2] == replacement.rpartition("/")[2]
+    if is_known and (is_alike or nearest(match, known) is None):
         return f"; it is the other way round, from the node's name: {replacement}:={match}"
     head = match.strip("/") + "/"
     found = next((name for name in known if head != "/" and name.removeprefix("/").startswith(head)), None)

@@ -69,6 +69,7 @@ def test_rules_of_the_first_part_of_names(rule: str, meant: str) -> None:
         ("node:=my", "; did you mean __node:=my?"),
         ("/output:=pose", "; it is the other way round, from the node's name: pose:=/output"),
         ("x:=arm/left/pose", "; it is the other way round, from the node's name: arm/left/pose:=x"),
+        ("/turtle1/pose:=pose", "; it is the other way round, from the node's name: pose:=/turtle1/pose"),
         ("pos:=pose", ""),
     ],
 )

@@ -27,6 +27,7 @@ from graphflow.analysis.mistakes.checks import IN_CODE, IN_FILES, Found
 from graphflow.analysis.mistakes.values.message_values import message_values, subscribed
 from graphflow.analysis.mistakes.values.names_in_pairs import names_in_pairs
 from graphflow.analysis.mistakes.values.old_parameters import old_parameters
+from graphflow.analysis.mistakes.values.parameter_values import parameter_values
 from graphflow.analysis.mistakes.values.two_names import two_names
 from graphflow.analysis.rclpy_futures import early_questions, early_results
 from graphflow.analysis.uncalled import misspelt_main
@@ -39,6 +40,7 @@ _IN_PROGRAMS: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     cancelled_futures,
     mixed_interfaces,
     old_parameters,
+    parameter_values,
     names_in_pairs,
     single_spins,
     nested_spins,

@@ -52,6 +52,10 @@ TEXTS: dict[str, str] = {
         "it was already destroyed, by itself or with its node: use it earlier, and call destroy_node() last"
     ),
     r"Context\.init\(\) must only be called once": "call rclpy.init() once, before the first node is created",
+    r"generator already executing": (
+        "rclpy.spin has one executor for all threads: add the nodes to one, executor = MultiThreadedExecutor(), "
+        "executor.add_node(node) for each, and executor.spin()"
+    ),
     r"property 'value' of 'Parameter' object has no setter": (
         "a Parameter is a copy; the node's own is set by set_parameters([Parameter('name', value=...)])"
     ),

@@ -38,6 +38,11 @@ def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]
             text = f"{read}.result() runs only after Ctrl-C, since spin (line {line}) returns then"
             yield statement.lineno, f"{text}; write rclpy.spin_until_future_complete({node}, {read}) in line {line}"
             return
+        if _spins(statement):
+            text = f"{ast.unparse(statement)} runs only after Ctrl-C, since spin (line {line}) returns then"
+            way = "executor = SingleThreadedExecutor(), executor.add_node(node) for each, executor.spin()"
+            yield statement.lineno, f"{text}; spin all nodes together: {way}"
+            return
         match statement:
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr=name) as function) as call):
                 is_sent = _sends(call) or (isinstance(owner, ast.Name) and name in sending)

@@ -34,6 +34,15 @@ def test_statements_that_send(statement: str) -> None:
     assert text.startswith(f"{statement.partition('(')[0]} runs only after Ctrl-C, since spin (line 14) returns then")
 
 
+def test_another_spin() -> None:
+    """It begins when the first one ends."""
+    [(line, text)] = after_spin(ast.parse(_PROGRAM.format("rclpy.spin(other)\n    other.move()")))
+    assert line == 15
+    assert text.startswith(
+        "rclpy.spin(other) runs only after Ctrl-C, since spin (line 14) returns then; spin all nodes"
+    )
+
+
 @pytest.mark.parametrize(
     "statement",
     ["node.destroy_node()", "node.stop_robot()", "node.report()", "rclpy.shutdown()", "print(node.count)", "move()"],

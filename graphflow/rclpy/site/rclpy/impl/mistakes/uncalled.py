@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from graphflow.analysis.mistakes.rclpy_source import slips
 from graphflow.analysis.syntax import syntax_of
-from graphflow.analysis.user_code import is_users, short_place
+from graphflow.analysis.user_code import is_users, parts_of, short_place
 from rclpy.impl.entities import entities_of
 from rclpy.impl.nodes import internals_of, nodes_of
 
@@ -48,19 +48,26 @@ class Uncalled:
                 self._read(node, is_spun=is_spun)
 
     def _leaves(self, node: Node) -> None:
-        if not isinstance(getattr(sys, "last_value", None), Exception):  # which has ended the program, and is shown
-            self._read(node, is_spun=True)
+        ended_by = getattr(sys, "last_value", None)
+        self._read(node, is_spun=True, after=ended_by if isinstance(ended_by, Exception) else None)
         self._nodes.discard(internals_of(node).core.id)
         self._seen.discard(internals_of(node).core.id)
 
-    def _read(self, node: Node, *, is_spun: bool) -> None:
+    def _read(self, node: Node, *, is_spun: bool, after: Exception | None = None) -> None:
+        """Report on a node's files; after an error that ended the program, only on the methods it came from."""
         (self._nodes if is_spun else self._seen).add(internals_of(node).core.id)
         for file in set(_files_of(node)) - self._files:
             self._files.add(file)
             with suppress(OSError, SyntaxError, ValueError):  # its source is not available
                 module = syntax_of(file).module
                 for line, text in slips(module):
+                    if after is not None and not any(f"'{name}'" in text for name in _functions_in(after)):
+                        continue
                     logger.warning("%s: %s", short_place(file, line), text)
+
+
+def _functions_in(error: Exception) -> list[str]:
+    return [part.tb_frame.f_code.co_name for part in parts_of(error.__traceback__)]
 
 
 def _files_of(node: Node) -> Iterator[str]:

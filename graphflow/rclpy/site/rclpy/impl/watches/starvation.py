@@ -44,6 +44,11 @@ _WAIT = Wake.wait.__code__
 logger = logging.getLogger("graphflow")
 
 
+_ONE_EXECUTOR = (
+    "spin all nodes together: executor = SingleThreadedExecutor(), executor.add_node(node) for each, executor.spin()"
+)
+
+
 class _Report(NamedTuple):
     text: str
     is_over: str
@@ -171,7 +176,8 @@ class HeldUp:
             )
         else:
             who = "the program" if stack.thread is threading.main_thread() else thread
-            way = "add the node to the executor that is spun there" if stack.spins else "have it call rclpy.spin(node)"
+            is_spinning = stack.spins or any(other.spins for other in stacks())
+            way = _ONE_EXECUTOR if is_spinning else "have it call rclpy.spin(node)"
             text = (
                 f"{name} has not been spun {for_long}, and {_joined(kept)} should be called: {who} is in {place}; {way}"
             )

@@ -26,6 +26,22 @@ def work():
 """
 
 
+TWICE = """from rclpy.node import Node
+from std_msgs.msg import Int32
+class Lamp(Node):
+    def __init__(self):
+        super().__init__("lamp")
+        self.a = self.create_subscription(Int32, "a", self.heard, 10)
+        self.b = self.create_subscription(Int32, "b", self.heard, 10)
+        self.pub = self.create_publisher(Int32, "c", 10)
+    def heard(self, message):
+        print(message.data)
+
+    def heard(self, message):
+        print(message.r)
+"""
+
+
 @pytest.mark.parametrize("is_spun", [True, False])
 def test_a_method_without_parentheses(
     node: Node,
@@ -74,6 +90,23 @@ def test_a_program_that_an_error_ends(
     Node("lamp").create_timer(100.0, space["tick"])
     rclpy.shutdown()
     assert ("parentheses" in caplog.text) is is_told
+
+
+def test_an_error_of_a_method_that_is_replaced(
+    node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """What the source shows of the method in which it was raised is the cause, and is told."""
+    file, space = tmp_path / "lamp.py", {"__name__": "lamp"}
+    file.write_text(TWICE)
+    exec(compile(TWICE, str(file), "exec"), space)
+    made: Any = space["Lamp"]
+    lamp = made()
+    with pytest.raises(AttributeError) as caught:
+        lamp.heard(1)
+    monkeypatch.setattr(sys, "last_value", caught.value, raising=False)
+    rclpy.shutdown()
+    [text] = [record.getMessage() for record in caplog.records if record.getMessage().startswith("lamp.py")]
+    assert text.startswith("lamp.py:9: Lamp has another 'heard' in line 12, which replaces this one; rename")
 
 
 def test_nodes_that_left(node: Node) -> None:
