@@ -23,6 +23,9 @@ class GraphCommand(click.Command):
         except click.NoSuchOption as error:
             text = as_argument(error.option_name, args)
             known = [word for param in self.params for word in param.opts]
+            if error.option_name == "-p" and text is not None:
+                way = f"An argument of the graph is written as {text}. {OF_NODES['-p']}"
+                raise click.NoSuchOption("-p", way, ctx=ctx) from None
             if error.option_name in OF_NODES:
                 raise click.NoSuchOption(error.option_name, OF_NODES[error.option_name], ctx=ctx) from None
             if text is None or nearest(error.option_name, known, cutoff=0.85) is not None:

@@ -365,10 +365,7 @@ _TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false"
 
 
 def truth(value: object, file: str) -> bool:
-    """Return the truth value of a condition.
-
-    Args:
-        file: The file of the condition, for the hint: launch files in Python have other comparisons.
+    """Return the truth value of a condition in a file; hints for launch files in Python have other comparisons.
 
     Raises:
         SubstitutionError: The value is neither true nor false.
@@ -381,6 +378,9 @@ def truth(value: object, file: str) -> bool:
     meant = _TRUTHS.get(str(value).strip().lower())
     compare = "EqualsSubstitution(..., 'text')" if file.endswith(".py") else "$(eval NAME == 'text')"
     way = f"write {meant!r}" if meant is not None else f"compare with {compare}"
+    if meant is None and isinstance(value, str) and value.isidentifier():
+        argument = f"LaunchConfiguration({value!r})" if file.endswith(".py") else f"$(var {value})"
+        way = f"to use the argument of that name write {argument}; else {way}"
     raise SubstitutionError(f"expected true or false, got {value!r}; {way}")
 
 

@@ -284,13 +284,22 @@ def test_no_place_for_a_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         apply(f"$(substituted {tmp_path / 'p.yaml'})")
 
 
+ARGUMENT = "to use the argument of that name write"
+
+
 @pytest.mark.parametrize(
     ("value", "file", "way"),
     [
         ("on", "a.yaml", "write 'true'"),
         ("NO", "a.launch.py", "write 'false'"),
-        ("fast", "a.yaml", "compare with $(eval NAME == 'text')"),
-        ("fast", "a.launch.py", "compare with EqualsSubstitution(..., 'text')"),
+        ("1.5", "a.yaml", "compare with $(eval NAME == 'text')"),
+        ("1.5", "a.launch.py", "compare with EqualsSubstitution(..., 'text')"),
+        ("sim", "a.yaml", f"{ARGUMENT} $(var sim); else compare with $(eval NAME == 'text')"),
+        (
+            "sim",
+            "a.launch.py",
+            f"{ARGUMENT} LaunchConfiguration('sim'); else compare with EqualsSubstitution(..., 'text')",
+        ),
     ],
 )
 def test_a_condition_that_is_none(value: str, file: str, way: str) -> None:

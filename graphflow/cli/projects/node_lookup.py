@@ -17,7 +17,8 @@ from graphflow.cli.substitutes import no_package
 from graphflow.errors import GraphflowError, NoClass, NoModule, RunsWhenImported, UsageFault
 from graphflow.graph.model import class_meant
 from graphflow.names import did_you_mean, nearest
-from graphflow.reading import why_no_file
+from graphflow.reading import lenient_text, why_no_file
+from graphflow.runtime.declarations.declared import snake_case
 from graphflow.supervisor.launching.classes import (
     add_root,
     import_class,
@@ -27,8 +28,9 @@ from graphflow.supervisor.launching.classes import (
 )
 from graphflow.workspace.executables import SLIP, find, project_nodes, with_graphflow
 from graphflow.workspace.installed import installed, package_of, packages_with
+from graphflow.workspace.node_classes import node_classes_in
 from graphflow.workspace.packages import Workspace, find_workspace
-from graphflow.workspace.project import demos_root, project_root, shown
+from graphflow.workspace.project import demos_root, module_of, project_root, shown
 from graphflow.workspace.unfound import owners, why_no_package
 
 FOLDERS = 1000
@@ -91,7 +93,7 @@ def _by_name(what: str, root: Path, words: Sequence[str]) -> type[Node]:
     if what.rpartition(".")[2][:1].isupper():
         module, _, name = what.rpartition(".")
         meant = nearest_module(module or name.lower(), str(root)) or module or f"nodes.{name.lower()}"
-        raise UsageFault(f"{what!r}: write MODULE:CLASS, {meant}:{name}")
+        raise UsageFault(f"{what!r}: write MODULE:CLASS, {_class_in(root, name) or f'{meant}:{name}'}")
     return _dotted(what) if "." in what else _node_by_name(what, root, words)
 
 
@@ -169,7 +171,7 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
         why += packages[what].why_no_executable
         return f"the package {what!r} has no executable that graphflow can run{why}"
     if what == root.name and (own := project_nodes(root)):
-        meant = nearest(words[0], own) if words else None
+        meant = (nearest(words[0], own) or _class_in(root, words[0].removesuffix(".py"))) if words else None
         return f"{what!r} is the project that you are in: graphflow run {meant or min(own)}"
     why_none = why_no_package(what, workspace)
     if why_none is not None:
@@ -234,6 +236,17 @@ def _instead_of(file: Path) -> str:
     if file.parent.name in ("", "nodes") and (demos_root() / "nodes" / file.name).is_file():
         return f"; {file.name} comes with graphflow: graphflow run {file.stem}"
     return did_you_mean(str(file), [str(found) for found in above.glob("*.py")])
+
+
+def _class_in(root: Path, word: str) -> str:
+    """Return a node class of a project as MODULE:CLASS, found by its name or its file's; "" if there is none."""
+    for at, folders, names in islice(os.walk(root), FOLDERS):
+        folders[:] = sorted(folder for folder in folders if not folder.startswith((".", "venv")))
+        for file in (Path(at, name) for name in sorted(names) if name.endswith(".py")):
+            for cls in node_classes_in(file) if "Node" in lenient_text(file) else ():
+                if word in (cls, snake_case(cls), file.stem):
+                    return f"{module_of(file)[1]}:{cls}"
+    return ""
 
 
 def _below(above: Path, name: str) -> Path | None:

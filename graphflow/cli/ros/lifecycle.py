@@ -107,7 +107,7 @@ def set_(name: str, transition: str, timeout: float) -> int:
         wanted = ways.get(transition) or next((t for t in ways.values() if str(t.id) == transition), None)
         if wanted is None:
             label = state(view, node, timeout).label
-            if transition == label:
+            if transition == label or (transition, label) == ("activate", "active"):
                 output.error(f"{node} is {label} already")
                 return exits.FAILED
             output.error(f"{node} is {label}, which has no transition {transition!r}{did_you_mean(transition, ways)}")

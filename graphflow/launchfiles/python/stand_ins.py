@@ -283,6 +283,10 @@ def no_equivalent(call: RecordedCall) -> str:
     if call.kind in NAMES["launch.event_handlers"].split():
         return f"{call.kind} is an event handler, and no action: write RegisterEventHandler({call.kind}(...))"
     near = nearest(call.kind, known, cutoff=0.85) if call.kind not in known else None
+    if call.kind == "DeclareLaunchArgument":
+        name = call.args[0] if call.args and isinstance(call.args[0], str) else "NAME"
+        way = f"LaunchConfiguration({name!r}) has its value, where one is used"
+        return f"a DeclareLaunchArgument only declares the argument, in the list of a LaunchDescription; {way}"
     return f"{call.kind} has no equivalent in a graph file" + (f"; did you mean {near!r}?" if near else "")
 
 

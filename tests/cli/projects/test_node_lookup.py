@@ -135,7 +135,8 @@ def test_the_project_that_one_is_in(project: Path) -> None:
     """The project's own name is not a package; its nodes are run by name."""
     names = 'slide = "own_nodes.slide:Slide"\nleft = "own_nodes.two:Left"\n'
     (project / "pyproject.toml").write_text(f'[project]\nname = "x"\n[project.entry-points."graphflow.nodes"]\n{names}')
-    for words, node in (([], "left"), (["slid"], "slide")):
+    others = (["two"], "own_nodes.two:Left"), (["right"], "own_nodes.two:Right"), (["nobody"], "left")
+    for words, node in (([], "left"), (["slid"], "slide"), *others):
         with pytest.raises(UsageFault, match=f"'{project.name}' is the project that you are in: graphflow run {node}"):
             find_class(project.name, words)
 

@@ -43,6 +43,9 @@ def test_a_life(machine: Machine) -> None:
     )
     label = machine.look("lifecycle", "get", "/lc_talker").partition(" ")[0]
     assert machine.look("lifecycle", "set", "/lc_talker", label, code=1) == f"error: /lc_talker is {label} already\n"
+    machine.look("lifecycle", "set", "/lc_talker", "activate")
+    for word in ("active", "activate"):
+        assert machine.look("lifecycle", "set", "/lc_talker", word, code=1) == "error: /lc_talker is active already\n"
     told = machine.look("lifecycle", "get", "/nobody", code=1)
     assert told == "error: there is no node /nobody; there is /lc_talker\n"  # and not the other
     machine.look("down")
