@@ -14,7 +14,9 @@ from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 _DECORATORS = {"timer", "subscription", "service", "action", "task"}
 _METHODS = {"publish", "publish_feedback", "feedback", "succeed", "abort", "canceled", "send_goal_async", "call_async"}
+_METHODS |= {"sendTransform"}
 """Methods to which beginners assign a message."""
+_LEVELS = ("debug", "info", "warn", "warning", "error", "fatal")
 _DUNDERS = {"init": "__init__", "int": "__init__", "inti": "__init__", "main": "__main__"}
 _HOOKS = ("on_start", "on_configure", "on_activate")
 
@@ -47,11 +49,13 @@ def _inside(method: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[tuple[in
 
 def replaced_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find assignments to methods that are to be called: `self.pub.publish = message`."""
+    made = {target.id for node in nodes_in(code) for target in _made(node)}
     for node in nodes_in(code):
-        if not isinstance(node, ast.Assign) or _is_function(node.value):
+        if not isinstance(node, ast.Assign) or _is_function(node.value, made):
             continue
         for target in node.targets:
-            if isinstance(target, ast.Attribute) and target.attr in _METHODS and not is_own(target):
+            is_called = isinstance(target, ast.Attribute) and (target.attr in _METHODS or _is_of_logger(target))
+            if isinstance(target, ast.Attribute) and is_called and not is_own(target):
                 shown = ast.unparse(target)
                 if target.attr == "feedback" and not _is_goal(target.value):
                     continue
@@ -62,6 +66,27 @@ def _is_goal(owner: ast.expr) -> bool:
     return isinstance(owner, ast.Name) and "goal" in owner.id
 
 
-def _is_function(value: ast.expr) -> bool:
-    """Whether a value may stand for a method, as in a test: a function, or the result of a factory."""
-    return isinstance(value, (ast.Lambda, ast.Name)) or (isinstance(value, ast.Call) and "ock" in last_name(value.func))
+def _made(node: ast.AST) -> Iterator[ast.Name]:
+    """Yield the names that an assignment binds to an object of a class, such as a message."""
+    if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call) and last_name(node.value.func)[:1].isupper():
+        yield from (target for target in node.targets if isinstance(target, ast.Name))
+
+
+def _is_of_logger(target: ast.Attribute) -> bool:
+    match target.value:
+        case ast.Call(func=function):
+            return target.attr in _LEVELS and last_name(function) == "get_logger"
+        case ast.Attribute(attr="log") as log:
+            return target.attr in _LEVELS and is_own(log)
+    return False
+
+
+def _is_function(value: ast.expr, made: set[str]) -> bool:
+    """Whether a value may stand for a method, as in a test: a function, or the result of a factory.
+
+    Args:
+        made: Names of objects that are none.
+    """
+    if isinstance(value, ast.Name):
+        return value.id not in made
+    return isinstance(value, ast.Lambda) or (isinstance(value, ast.Call) and "ock" in last_name(value.func))

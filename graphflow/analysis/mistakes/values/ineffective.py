@@ -1,18 +1,13 @@
-"""Statements without the effect meant: `self.state == "MOVE"`, where `=` was meant, and `self.ticks =+ 1`, for `+=`.
-
-Likewise `self.pub.publish = message`, where a call was meant.
-"""
+"""Statements without the effect meant: `self.state == "MOVE"`, where `=` was meant, and `self.ticks =+ 1`, for `+=`."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import children_of, last_name
+from graphflow.analysis.syntax import children_of
 
 _SIGNS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/"}
-_CALLED = ("publish", "call_async", "send_goal_async", "publish_feedback", "sendTransform")
-_LEVELS = ("debug", "info", "warn", "warning", "error", "fatal")
 _PLACES = (ast.Name, ast.Attribute, ast.Subscript)
 """Expressions that can be assigned to."""
 
@@ -34,11 +29,6 @@ def ineffective(code: ast.AST) -> Iterator[tuple[int, str]]:
                 is_inside = False
             case ast.Expr(value=value) if is_inside and (text := _instead(value)):
                 yield node.lineno, text
-            case ast.Assign(targets=[ast.Attribute() as target], value=value) if is_inside and _is_replaced(
-                target, value
-            ):
-                called, given = ast.unparse(target), ast.unparse(value)
-                yield node.lineno, f"{called} is replaced, and not called; write {called}({given})"
             case ast.Assign(targets=[target], value=ast.UnaryOp(op=ast.UAdd(), operand=step) as value) if _is_misplaced(
                 target, value
             ):
@@ -59,19 +49,6 @@ def _instead(value: ast.expr) -> str:
             set_ = f"{ast.unparse(left)} {sign}= {ast.unparse(value.right)}"
             return f"{ast.unparse(value)} computes without effect; write {set_}" if sign else ""
     return ""
-
-
-def _is_replaced(target: ast.Attribute, value: ast.expr) -> bool:
-    """Whether a method of a publisher, client or logger is set to its argument."""
-    match target.value:
-        case ast.Call(func=function) if last_name(function) == "get_logger":
-            return target.attr in _LEVELS
-        case ast.Attribute(value=ast.Name(id="self"), attr="log"):
-            return target.attr in _LEVELS
-        case ast.Name() | ast.Attribute() as owner:
-            is_given = isinstance(value, (ast.Name, ast.Call)) and last_name(owner) != "self"
-            return target.attr in _CALLED and is_given
-    return False
 
 
 def _is_misplaced(target: ast.expr, value: ast.UnaryOp) -> bool:

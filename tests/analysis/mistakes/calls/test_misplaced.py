@@ -32,6 +32,15 @@ def told(body: str) -> list[tuple[int, str]]:
             "self.pub.publish is a method: write self.pub.publish(message)",
         ),
         (
+            "def f(self):\n    msg = String()\n    self.pub.publish = msg",
+            "self.pub.publish is a method: write self.pub.publish(msg)",
+        ),
+        (
+            "def f(self):\n    self.get_logger().info = 'ready'",
+            "self.get_logger().info is a method: write self.get_logger().info('ready')",
+        ),
+        ("def f(self):\n    self.log.warning = text()", "self.log.warning is a method: write self.log.warning(text())"),
+        (
             "async def run(self, goal):\n    goal.feedback = F(x=1)",
             "goal.feedback is a method: write goal.feedback(F(x=1))",
         ),
@@ -54,6 +63,8 @@ def test_without_effect(body: str, text: str) -> None:
         "def f(self):\n    self.publish = 1",
         "def f(self):\n    self.other.publish = lambda m: None",
         "def f(self):\n    self.other.publish = Mock()",
+        "def f(self, fake):\n    self.other.publish = fake",
+        "def f(self):\n    self.map.info = info()",
         "def f(self):\n    @cache\n    def g(): ...",
         "def f(self, form):\n    form.feedback = 'good'",
     ],
