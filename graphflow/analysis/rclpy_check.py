@@ -22,6 +22,7 @@ from graphflow.analysis.deadlock_check import Finding, Grade
 from graphflow.analysis.rclpy_flags import Polled, changers, polled, written_from_outside
 from graphflow.analysis.rclpy_futures import SPINS, dotted, futures_of, polled_futures
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
+from graphflow.analysis.uncalled import uncalled_methods
 from graphflow.errors import Place
 from graphflow.reading import found_text
 
@@ -271,8 +272,18 @@ def _grade(wait: _Wait) -> Grade:
 
 def findings_in(path: Path) -> list[Finding]:
     """Return the findings in a Python file, or in all files below a folder; none for a file that cannot be read."""
-    found = [f for tree, file in _trees_in(path) for cls in _classes(tree, file) for f in cls.findings()]
+    found: list[Finding] = []
+    for tree, file in _trees_in(path):
+        idle = _idle_loops(tree)
+        found += (f for cls in _classes(tree, file) for f in cls.findings() if f.place.line not in idle)
     return sorted(dict.fromkeys(found), key=lambda f: f.place)
+
+
+def _idle_loops(tree: ast.Module) -> set[int]:
+    """Return the lines of loops that never run: `while not client.wait_for_service:`, whose method is not called."""
+    tests = [node.test for node in nodes_in(tree) if isinstance(node, ast.While)]
+    negated = {test.lineno for test in tests if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not)}
+    return negated & {line for line, _ in uncalled_methods(tree)} if negated else set()
 
 
 def unfollowed_in(path: Path) -> list[Place]:

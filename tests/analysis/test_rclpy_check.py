@@ -148,6 +148,13 @@ rclpy.spin(Square())
 """
 
 
+def test_a_loop_that_never_runs(tmp_path: Path) -> None:
+    """The method in its condition is not called, which another check tells; without the `not`, it runs for ever."""
+    assert found(tmp_path, init="while not self.client.wait_for_service: pass") == []
+    loop = "while self.client.wait_for_service: pass"
+    assert found(tmp_path, init=loop) == [("IF THIS BRANCH RUNS", loop)]
+
+
 def test_a_callback_that_waits_for_its_next_call(tmp_path: Path) -> None:
     """No group and no thread ends that: the next call would wait as well."""
     (tmp_path / "square.py").write_text(ITSELF)

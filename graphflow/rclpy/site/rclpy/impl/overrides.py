@@ -53,7 +53,8 @@ def remark(name: str, value: Any, source: str, kind: Parameter.Type) -> str:
         where, way = f"in {Path(source).name}", _in_file(name, written, source, kind)
     if not written and kind in _NEEDED:
         return f"{name} is set {where}: it needs {_NEEDED[kind]}"
-    return f"{name} is set {where}" + (f": write {way}" if written and way else "")
+    other = f", or declare it as declare_parameter({name!r}, {value})" if isinstance(value, bool) else ""
+    return f"{name} is set {where}" + (f": write {way}{other}" if written and way else "")
 
 
 def _in_file(name: str, written: str, source: str, kind: Parameter.Type) -> str:
@@ -81,7 +82,7 @@ def _written(value: Any, kind: Parameter.Type) -> str:
         items = value if isinstance(value, list) else str(value).strip("()").replace(";", ",").split(",")
         parts = [_written(item.strip() if isinstance(item, str) else item, _SINGLE[kind]) for item in items]
         return f"[{', '.join(parts)}]" if all(parts) else ""
-    text = str(value)
+    text = str(value).lower() if isinstance(value, bool) else str(value)
     try:
         match kind:
             case Kind.BOOL:

@@ -40,6 +40,8 @@ def test_how_a_value_is_written(value: Any, kind: Parameter.Type, written: str) 
 def test_the_command_line() -> None:
     """A value with spaces or quotes stands in quotes."""
     assert remark("gain", 7, "command line", Kind.DOUBLE) == "gain is set on the command line: write -p gain:=7.0"
+    told = remark("on", True, "command line", Kind.STRING)
+    assert told.endswith("""write -p "on:='true'", or declare it as declare_parameter('on', True)""")
     assert remark("name", 7, "command line", Kind.STRING).endswith("""write -p "name:='7'\"""")
 
 
