@@ -15,6 +15,7 @@ from graphflow.analysis.mistakes.calls.called_early import results_passed, spins
 from graphflow.analysis.mistakes.calls.cancelled_futures import cancelled_futures
 from graphflow.analysis.mistakes.calls.early_messages import early_messages
 from graphflow.analysis.mistakes.calls.forgotten_callbacks import forgotten_callbacks
+from graphflow.analysis.mistakes.calls.hidden_methods import hidden_methods
 from graphflow.analysis.mistakes.calls.inverted_waits import inverted_waits
 from graphflow.analysis.mistakes.calls.lifecycle_hooks import lifecycle_hooks
 from graphflow.analysis.mistakes.calls.misgiven import misgiven
@@ -51,6 +52,7 @@ _IN_PROGRAMS: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     two_names,
     early_results,
     early_messages,
+    hidden_methods,
 )
 """Checks of programs for rclpy alone."""
 

@@ -40,18 +40,20 @@ _KINDS = {
 }
 _REPEATED = {"timer", "subscription", "service"}
 """Decorators of methods that run again and again."""
+_ANSWERED = {"subscription", "service"}
+"""Those that are called with a message."""
 _MISSING = object()
 
 
 def endless_waits(cls: type, definition: ast.ClassDef, module: ast.Module) -> Iterator[tuple[int, str, str]]:
-    """Find the lines of such waits in a class; each comes with the attribute and a sentence.
+    """Find the lines of such waits in a class; each comes with the attribute, if there is one, and a sentence.
 
     Args:
         cls: The class that the definition makes, or one that derives from it.
         module: The file with the definition.
     """
     for line, name, text in _waits(cls, definition):
-        if not has_attribute(module, name, outside=definition):
+        if not name or not has_attribute(module, name, outside=definition):
             yield line, name, text
 
 
@@ -76,6 +78,10 @@ def _waits(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str, str]
                     if isinstance(inspect.getattr_static(cls, thing.attr, None), Subscription) and not _may_leave(node):
                         text = f"this loop never ends, so that the {' '.join(handler & _REPEATED)} runs once"
                         yield node.lineno, thing.attr, f"{text}: read self.{thing.attr} in a method with @task"
+                case ast.While(test=ast.Constant(value=True)) if handler & _ANSWERED and not _may_leave(node):
+                    what = "message" if "subscription" in handler else "request"
+                    text = f"this loop never ends, so that only one {what} is handled"
+                    yield node.lineno, "", f"{text}: let the handler return, and loop in a method with @task"
                 case ast.Await(
                     value=ast.Call(func=ast.Attribute(value=ast.Attribute() as thing, attr="get"), args=[])
                 ) if is_own(thing) and "task" in handler and not any(isinstance(p, LOOPS) for p in parents):

@@ -103,7 +103,7 @@ def _slips(cls: type) -> Iterator[str]:
             *never_equal(cls, parent, definition, module),
         ]
         for line, name, text in endless_waits(cls, definition, module):
-            if not any(has_attribute(other, name) for other in other_modules(file, name)):
+            if not name or not any(has_attribute(other, name) for other in other_modules(file, name)):
                 found.append((line, text))
         yield from (f"{Place(file, line)}: {text}" for line, text in found)
 

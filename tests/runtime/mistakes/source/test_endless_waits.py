@@ -161,6 +161,17 @@ def test_flags_that_may_change(told: Told, flag: str, other: str, more: str) -> 
     assert told(f"while {flag}: await self.clock.sleep(0.1)", other, more) == []
 
 
+@pytest.mark.parametrize("end", ["", "if self.done: break", "if self.done: return"])
+def test_a_handler_that_handles_one_message(told: Told, end: str) -> None:
+    """Its loop has no end; the timer's may be meant so."""
+    loop = f"while True:\n            {end or 'pass'}\n            await self.clock.sleep(0.1)"
+    text = (
+        "this loop never ends, so that only one message is handled: let the handler return, and loop in a method with"
+    )
+    assert told("pass", loop) == ([] if end else [f"{text} @task"])
+    assert told(loop, "self.done = True") == []
+
+
 @pytest.mark.parametrize("end", ["break", "return", "raise TimeoutError"])
 def test_loops_that_may_end(told: Told, end: str) -> None:
     """In another way than by their flag."""
