@@ -41,7 +41,7 @@ _KINDS = {
 _REPEATED = {"timer", "subscription", "service"}
 """Decorators of methods that run again and again."""
 _ANSWERED = {"subscription", "service"}
-"""Those that are called with a message."""
+"""Decorators of methods that are called with a message or a request."""
 _MISSING = object()
 
 
