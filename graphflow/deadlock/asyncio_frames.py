@@ -17,6 +17,7 @@ import sys
 import threading
 from asyncio import AbstractEventLoop
 from collections.abc import Iterable, Iterator
+from operator import attrgetter
 from types import CodeType, FunctionType, MethodType
 from typing import Literal, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
@@ -79,6 +80,7 @@ _WAIT = asyncio.tasks._wait.__code__  # type: ignore[attr-defined]
 _WAIT_FOR = asyncio.wait_for.__code__
 _CONDITION_WAIT = asyncio.Condition.wait.__code__
 _ENTER = asyncio.Lock.__aenter__.__code__
+_UNREAD = attrgetter("_log_traceback", "_exception")
 _EXITS = ("__aexit__", "__exit__")
 
 
@@ -301,6 +303,25 @@ def times_inside(task: TaskLike, lock: object) -> int:
     frames = [frame for frame in map(suspended, chain) if frame is not None]
     outside = [frame.f_locals["self"] for frame in frames if frame.f_code in (_CONDITION_WAIT, _ENTER)]
     return blocks - sum(is_inside(context, lock) for context in outside)
+
+
+def unread_error(task: asyncio.Task[object]) -> BaseException | None:
+    """Return the error of a task that has failed, as long as nothing has read it; `task.exception()` would do so."""
+    if not task.done() or task.cancelled():
+        return None
+    is_unread, error = _UNREAD(task)
+    return error if is_unread else None
+
+
+def tasks_alive(loop: AbstractEventLoop) -> set[asyncio.Task[object]]:
+    """Return the tasks of a loop that still exist; from Python 3.14 on, only those that run.
+
+    Raises:
+        RuntimeError: Another thread has made a task meanwhile.
+    """
+    names = vars(asyncio.tasks)
+    known = [*names.get("_scheduled_tasks", names.get("_all_tasks", ()))]
+    return {task for task in known if task.get_loop() is loop} | asyncio.all_tasks(loop)
 
 
 def current_task(loop: AbstractEventLoop) -> object:

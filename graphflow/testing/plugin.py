@@ -77,11 +77,13 @@ def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
     if inspect.iscoroutinefunction(item.obj):
         item.obj = _limited(item, item.obj)
         return (yield)
+    has_failed = True
     try:
         result = yield
-    except (Exception, pytest.fail.Exception):  # any failure of the test, reported and raised
-        _report([f"{text}{_ASYNC_DEF}" for text in _forgotten()], item)
-        raise
+        has_failed = False
+    finally:
+        if has_failed:
+            _report([f"{text}{_ASYNC_DEF}" for text in _forgotten()], item)
     _fail_if_forgotten(_ASYNC_DEF)
     return result
 
@@ -238,14 +240,14 @@ def _is_of_a_line(error: BaseException) -> bool:
 async def _report_unmet(item: pytest.Function, graph: Graph) -> None:
     """Add the unmet waits to the report of a failing test."""
     from graphflow.analysis.user_code import place_in
-    from graphflow.runtime.mistakes.errors.kept_errors import KeptErrors, failed_tasks, name_of
+    from graphflow.runtime.mistakes.errors.kept_errors import KeptErrors
     from graphflow.testing.unmet import arrivals, unmet
 
     before = arrivals(graph)
     await asyncio.sleep(0)  # lets new tasks start
     found = _forgotten()
-    for task, error in failed_tasks(KeptErrors(asyncio.get_running_loop()).tasks()):
-        found.append(f"{name_of(task)} failed, and nothing awaits it: {error!r} ({place_in(error)})")
+    for _, name, error in KeptErrors(asyncio.get_running_loop()).failed():
+        found.append(f"{name} failed, and nothing awaits it: {error!r} ({place_in(error)})")
     try:
         found += await unmet(graph, before)
     except RuntimeError as error:  # the graph does not settle

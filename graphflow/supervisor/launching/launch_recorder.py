@@ -186,21 +186,20 @@ def _described(path: str, tree: ast.Module) -> list[Any]:
         raise NameError(f"it has no function {_FUNCTION}(){where}")
     description = space[_FUNCTION]()
     if not isinstance(description, RecordedCall):
-        raise _no_description(description, tree)
+        own = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == _FUNCTION]
+        RECORDING.written_at = own[-1].body[-1].lineno if own else 1
+        raise _no_description(description)
     return [description]
 
 
-def _no_description(returned: object, tree: ast.Module) -> TypeError:
-    """Return the error for a function that returns anything else, with the line of its last statement."""
+def _no_description(returned: object) -> TypeError:
+    """Return the error for a function that returns anything else."""
     what, hint = repr(returned), ""
     if isinstance(returned, (list, tuple)):
         what, hint = "a list", "; write LaunchDescription(...) around it"
     elif returned is None:
         hint = "; a return is missing"
-    error = TypeError(f"{_FUNCTION}() returned {what}, and not a LaunchDescription{hint}")
-    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == _FUNCTION]
-    error.lineno = functions[-1].body[-1].lineno if functions else 1  # type: ignore[attr-defined]
-    return error
+    return TypeError(f"{_FUNCTION}() returned {what}, and not a LaunchDescription{hint}")
 
 
 def _last(expression: ast.Name | ast.Attribute) -> str:

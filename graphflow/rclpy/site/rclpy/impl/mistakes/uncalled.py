@@ -6,7 +6,6 @@ Python runs them silently and without effect.
 from __future__ import annotations
 
 import logging
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import suppress
@@ -16,6 +15,7 @@ from graphflow.analysis.mistakes.rclpy_source import slips
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.user_code import is_users, parts_of, short_place
 from rclpy.impl.entities import entities_of
+from rclpy.impl.failing import failure
 from rclpy.impl.nodes import internals_of, nodes_of
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Uncalled:
                 self._read(node, is_spun=is_spun)
 
     def _leaves(self, node: Node) -> None:
-        ended_by = getattr(sys, "last_value", None)
+        ended_by = failure()
         self._read(node, is_spun=True, after=ended_by if isinstance(ended_by, Exception) else None)
         self._nodes.discard(internals_of(node).core.id)
         self._seen.discard(internals_of(node).core.id)

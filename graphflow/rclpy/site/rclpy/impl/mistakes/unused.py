@@ -7,7 +7,6 @@ their entities, or when the first node leaves.
 from __future__ import annotations
 
 import logging
-import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from graphflow.graph import params_file
 from graphflow.names import Remap, did_you_mean, nearest, rule_hint
+from rclpy.impl.failing import failure
 from rclpy.impl.nodes import internals_of, nodes_of
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class Unused:
     def _report(self, leaving: Node | None = None) -> None:
         if not self._is_reported:
             self._is_reported = True
-            if isinstance(sys.exc_info()[1] or getattr(sys, "last_value", None), Exception):
+            if isinstance(failure(), Exception):
                 return  # a failing program may not have created the entities that they are for
             nodes = [*self._nodes(), *([] if leaving is None else [leaving])]
             for text in (*self._remaps(nodes), *self._params(nodes), *self._strays(nodes)):

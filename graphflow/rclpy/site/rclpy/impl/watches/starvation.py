@@ -25,6 +25,7 @@ from rclpy.executors import Executor
 from rclpy.impl.deadlock.groups import executors, is_exclusive, threads_of
 from rclpy.impl.deadlock.stacks import Level, Stack, stacks
 from rclpy.impl.entities import arrived, entities_of, full_name, goal_of, name_of, node_of_goal, role_of
+from rclpy.impl.failing import failure
 from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.impl.spinning import Run
 from rclpy.timer import Timer
@@ -185,8 +186,7 @@ class HeldUp:
 
     def _leaves(self, node: Node) -> None:
         """Report a node that leaves without having been spun, unless reported before, or the program is failing."""
-        is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
-        if internals_of(node).was_spun or is_failing or full_name(node) in self._known:
+        if internals_of(node).was_spun or failure() is not None or full_name(node) in self._known:
             return
         kept = [
             label_with_line(e) for e in entities_of(node) if _called(e) and not isinstance(e, (Client, ActionClient))

@@ -6,11 +6,11 @@ In ROS 2 they are lost silently.
 from __future__ import annotations
 
 import logging
-import sys
 import time
 from typing import TYPE_CHECKING
 
 from graphflow.qos import Durability
+from rclpy.impl.failing import failure
 from rclpy.impl.nodes import internals_of
 
 if TYPE_CHECKING:
@@ -29,9 +29,7 @@ def attend(life: ContextState) -> None:
 
 
 def _tell(node: Node) -> None:
-    # After an uncaught error only `last_value` is left: the interpreter sets it when it prints the traceback.
-    is_failing = sys.exc_info()[0] is not None or getattr(sys, "last_value", None) is not None
-    if is_failing or time.monotonic() - internals_of(node).begun > BRIEF:
+    if failure() is not None or time.monotonic() - internals_of(node).begun > BRIEF:
         return
     for publisher in internals_of(node).publishers:
         endpoint = publisher.endpoint
