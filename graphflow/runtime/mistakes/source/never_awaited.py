@@ -10,7 +10,7 @@ import inspect
 from collections.abc import Iterator, Mapping
 
 from graphflow.analysis.attribute_uses import is_own, is_super
-from graphflow.analysis.syntax import FunctionNode, nodes_in
+from graphflow.analysis.syntax import FunctionNode, nodes_in, walk
 from graphflow.executor.clock import Clock
 from graphflow.runtime.actions.client import GoalClient
 from graphflow.runtime.declarations import declared
@@ -44,13 +44,35 @@ def never_awaited(
     for method in definition.body:
         own = _local(method) if isinstance(method, FunctionNode) else set()
         for node in nodes_in(method):
-            match node:
-                case ast.Expr(value=ast.Call(func=function) as call):
-                    called = _called(function, cls, parent, {k: v for k, v in space.items() if k not in own})
-                    if inspect.iscoroutinefunction(called) and not (is_own(function) and function.attr in replaced):
-                        name = getattr(called, "__qualname__", "")
-                        text = f"`{ast.unparse(call)}` does nothing, since {name} is a coroutine function"
-                        yield node.lineno, f"{text}; write await before it, in an async def"
+            if (call := _unused(node, definition)) is None:
+                continue
+            called = _called(call.func, cls, parent, {k: v for k, v in space.items() if k not in own})
+            if inspect.iscoroutinefunction(called) and not (is_own(call.func) and call.func.attr in replaced):
+                text = f"`{ast.unparse(call)}` does nothing, since {called.__qualname__} is a coroutine function"
+                yield call.lineno, f"{text}; write await before it, in an async def"
+
+
+def _unused(node: ast.AST, definition: ast.ClassDef) -> ast.Call | None:
+    """Return a call that is a whole statement, or of which only attributes are read, as if it gave a future."""
+    match node:
+        case ast.Expr(value=ast.Call() as call):
+            return call
+        case ast.Assign(targets=[ast.Name() | ast.Attribute() as target], value=ast.Call() as call):
+            is_kept = isinstance(target, ast.Name) or is_own(target)
+            return call if is_kept and not _is_used(target, definition) else None
+    return None
+
+
+def _is_used(target: ast.Name | ast.Attribute, definition: ast.ClassDef) -> bool:
+    """Whether a class uses what is kept under a name, other than by reading an attribute of it."""
+    kept = ast.unparse(target)
+    return any(
+        isinstance(node, (ast.Name, ast.Attribute))
+        and isinstance(node.ctx, ast.Load)
+        and not isinstance(parents[-1], ast.Attribute)
+        and ast.unparse(node) == kept
+        for node, parents in walk(definition)
+    )
 
 
 def _called(function: ast.expr, cls: type, parent: type, space: dict[str, object]) -> object:

@@ -73,11 +73,25 @@ def test_coroutines_that_nothing_awaits(line: str, name: str) -> None:
     assert _told(line) == [(3, f"`{line}` {NOTHING.format(name)}")]
 
 
+@pytest.mark.parametrize("kept", ["self.goal", "sent"])
+def test_coroutines_that_are_kept(kept: str) -> None:
+    """Nothing awaits them, even if it asks them for a result as it would a future."""
+    told = [(3, f"`self.counter.send_goal(goal)` {NOTHING.format('GoalClient.send_goal')}")]
+    assert _told(f"{kept} = self.counter.send_goal(goal)") == told
+    assert _told(f"{kept} = self.counter.send_goal(goal); print({kept}.result())") == told
+
+
 @pytest.mark.parametrize(
     "line",
     [
         "await self.clock.sleep(1.0)",
-        "task = self.drive()",
+        "task = self.drive(); await task",
+        "task = self.drive(); asyncio.create_task(task)",
+        "task = self.drive(); return task",
+        "self.kept = self.drive(); await self.kept",
+        "self.kept = other = self.drive()",
+        "self.all[0] = self.drive()",
+        "given.kept = self.drive()",
         "self.spawn(self.drive)",
         "self.steer()",
         "super().steer()",
