@@ -103,6 +103,8 @@ class Parameter:
                 return f"write {_TRUTHS[value.lower()]}: {value} is a text in YAML 1.2"
             case str() if plain(value) != value:
                 return f"write {plain(value)}"
+            case float() if self.type == "int" and value.is_integer():
+                return f"write {int(value)}"
             case float() if self.type == "int" and isinstance(self.default, int):
                 where = f" in {self.place}" if self.place.file else ""
                 return f"its default is {self.default}, an integer: for a double, write {self.default}.0{where}"

@@ -64,6 +64,7 @@ def test_values_that_fit(type_: ParamType, default: Any, given: Any, kept: Any) 
             "parameter 'p' is of type integer, 1.5 is not; "
             "its default is 1, an integer: for a double, write 1.0 in here:1",
         ),
+        ("int", 1, 20.0, "parameter 'p' is of type integer, 20.0 is not; write 20"),
         ("bool", True, 1.5, "parameter 'p' is of type boolean, 1.5 is not"),
         ("bool", True, "On", "parameter 'p' is of type boolean, 'On' is not; write true: On is a text in YAML 1.2"),
         ("bool", True, "no", "parameter 'p' is of type boolean, 'no' is not; write false: no is a text in YAML 1.2"),

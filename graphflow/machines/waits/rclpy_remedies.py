@@ -109,7 +109,9 @@ def _spun(way: Member, graph: WaitGraph) -> Iterator[str]:
     if len(nodes) > 1 and not has_executor:
         start = "threading.Thread(target=executor.spin, daemon=True).start()"
         both = " and ".join(nodes)
-        yield _text(f"let another thread spin {both} before {place}:", f"executor.add_node(...) for each, then {start}")
+        yield _text(
+            f"let another thread spin {both}, once, before {place}:", f"executor.add_node(...) for each, then {start}"
+        )
         return
     if reply is not None and reply not in unspun:
         both = "executor.add_node(...) for both nodes, executor.spin_until_future_complete(future)"
@@ -119,7 +121,8 @@ def _spun(way: Member, graph: WaitGraph) -> Iterator[str]:
         yield _text(f"spin while waiting, in {place}:", f"future = {_asynchronous(way.wait.via)},", spin)
     spin = "executor.spin" if has_executor else "rclpy.spin, args=(node,)"
     start = f"threading.Thread(target={spin}, daemon=True).start(),"
-    yield _text(f"let another thread spin {nodes[0]} before {place}:", start, "in place of any spin that comes later")
+    once = f"once, before {place} and any loop around it"
+    yield _text(f"let another thread spin {nodes[0]}, {once}:", start, "in place of any spin that comes later")
 
 
 def _after_init(wait: SetBy, graph: WaitGraph) -> list[str]:

@@ -322,6 +322,10 @@ def translation(name: str, kind: Kind = "attributes") -> str:
     return "" if word is None else f"in graphflow it is {word.here}".replace("`", "")
 
 
+_POLICIES = {"reliability", "durability", "history", "liveliness", "deadline_ns", "lifespan_ns", "lease_ns"}
+"""Arguments of a Qos."""
+
+
 def with_argument_hints(function: Callable[P, T]) -> Callable[P, T]:
     """Decorate a function: wrong arguments raise DeclarationError with the correct call or rclpy's equivalent."""
     parameters = inspect.signature(function).parameters.values()
@@ -336,6 +340,10 @@ def with_argument_hints(function: Callable[P, T]) -> Callable[P, T]:
         for word in kwargs.keys() - named:
             if hint := translation(word, "keywords"):
                 raise DeclarationError(f"{here()}: {called} has no {word}=; {hint}")
+        for policy in (kwargs.keys() - named) & _POLICIES:
+            raise DeclarationError(
+                f"{here()}: {called} has no {policy}=: it belongs to qos=Qos(depth=10, {policy}=...)"
+            )
         if len(args) > len(first):
             if called == "Param" and isinstance(args[1], type):
                 way = f"the default decides it: write Param({args[2]!r}, ...)"

@@ -50,6 +50,10 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: Param(anything(float)), "cannot be a parameter: its default decides the type: write 0.0"),
     (lambda: anything(Param)(float, 1.5), "Param takes no type; the default decides it: write Param(1.5, ...)"),
     (lambda: Param(anything(None)), "None cannot be a parameter: use a bool, int, float, str, bytes, or a list of one"),
+    (
+        lambda: anything(Publisher)(String, "words", reliability="best_effort"),
+        "Publisher has no reliability=: it belongs to qos=Qos(depth=10, reliability=...)",
+    ),
     (lambda: Param(anything([])), "an empty list has no type"),
     (lambda: Param(anything([1, "a"])), "[1, 'a'] cannot be a parameter"),
     (lambda: Param(5, le=4), "the default = 5 is out of range: at most 4"),

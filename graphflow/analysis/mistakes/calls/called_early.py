@@ -12,6 +12,13 @@ from typing import NamedTuple
 
 from graphflow.analysis.syntax import FunctionNode, last_name, walk
 
+_GIVING = {
+    "create_subscription": "message",
+    "create_service": "request, response",
+    "add_done_callback": "future",
+    "ActionServer": "goal_handle",
+}
+"""The arguments of callbacks, by the function that takes them."""
 _THREADS = {"Thread": 1, "Process": 1, "Timer": 1, "submit": 0, "to_thread": 0, "run_in_executor": 1}
 """Calls that run a function in a thread or process, with the position of the function among their arguments."""
 TAKERS = {
@@ -102,6 +109,10 @@ def _way(given: _Given, name: str) -> str:
         return named
     if given.taker not in _THREADS:
         lambda_ = f"lambda: {ast.unparse(call)}"
+        if given.taker in _GIVING:
+            received = _GIVING[given.taker]
+            passed = [ast.unparse(part) for part in (*call.args, *call.keywords)]
+            lambda_ = f"lambda {received}: {name}({', '.join([*passed, received])})"
         return f"{given.keyword}={lambda_}" if given.keyword else lambda_
     args = [ast.unparse(value) for value in call.args]
     if given.taker in ("Thread", "Process", "Timer"):

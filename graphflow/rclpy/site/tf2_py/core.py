@@ -103,11 +103,14 @@ class BufferCore:
         """Return the pose of `source` in `target`, and its time. Raises TransformException."""
         try:
             with self._graphflow_lock:
-                return self._graphflow_frames.find(target, source, stamp)
+                found = self._graphflow_frames.find(target, source, stamp)
         except TransformError as error:
             if self._graphflow_frames.histories:  # an empty buffer has another cause, which is reported elsewhere
                 self._graphflow_unknown.lookup_failed(error)
             raise in_words_of_tf2(error) from None
+        if stamp:
+            self._graphflow_unknown.lookup_succeeded()
+        return found
 
     def lookup_transform_full_core(
         self, target_frame: str, target_time: object, source_frame: str, source_time: object, fixed_frame: str

@@ -86,9 +86,10 @@ def test_functions_of_threads(line: str, text: str) -> None:
     ("line", "text"),
     [
         ("self.create_timer(1.0, self.tick())", f"create_timer(..., self.tick()) calls tick {HERE} self.tick"),
-        ("f.add_done_callback(work(3))", f"add_done_callback(..., work(3)) calls work {HERE} lambda: work(3)"),
+        ("f.add_done_callback(work(3))",
+         f"add_done_callback(..., work(3)) calls work {HERE} lambda future: work(3, future)"),
         ("ActionServer(self, A, 'a', execute_callback=work(3))",
-         f"execute_callback=work(3) calls work {HERE} execute_callback=lambda: work(3)"),
+         f"execute_callback=work(3) calls work {HERE} execute_callback=lambda goal_handle: work(3, goal_handle)"),
     ],
 )  # fmt: skip
 def test_callbacks(line: str, text: str) -> None:

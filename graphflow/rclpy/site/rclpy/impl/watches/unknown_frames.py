@@ -20,7 +20,10 @@ AHEAD_NS = 10**9
 """Nanoseconds by which a requested time may be later than the newest transform, as `now()` is."""
 _FRAMES_BOUND = 100
 _AHEAD = ""
-_WAYS = "as with now(): ask for the newest one, rclpy.time.Time(), or wait, timeout=Duration(seconds=1.0)"
+_WAYS = (
+    "as with now(): ask for the newest one, rclpy.time.Time(), or wait, timeout=Duration(seconds=1.0), in a "
+    "MultiThreadedExecutor(num_threads=2)"
+)
 logger = logging.getLogger("graphflow")
 
 
@@ -53,3 +56,7 @@ class UnknownFrames:
         frame = users_frame(sys._getframe(1))
         place = "" if frame is None else f"{short_place(frame.f_code.co_filename, frame.f_lineno)}: "
         logger.warning("%s%s", place, text)
+
+    def lookup_succeeded(self) -> None:
+        """Note that a lookup has found its transform, so that the time it asks for is not too early for good."""
+        self._since.pop(_AHEAD, None)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 from geometry_msgs.msg import TransformStamped
-from tf2_ros import Buffer, LookupException
+from tf2_ros import Buffer, ExtrapolationException, LookupException
 
 from graphflow.errors import ExtrapolationError, UnknownFrame
 from rclpy.impl.watches import unknown_frames
@@ -51,6 +51,22 @@ def test_a_time_whose_transform_is_on_its_way(
         kept.lookup_failed(error)
     told = [record.getMessage() for record in caplog.records if "is not there yet" in record.getMessage()]
     assert len(told) == is_told
+
+
+def test_a_time_that_is_waited_for(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lookup with a timeout fails until the transform is there; the one that finds it ends the series."""
+    times = iter(range(60))
+    monkeypatch.setattr(unknown_frames, "time", SimpleNamespace(monotonic=lambda: next(times)))
+    buffer, sent = Buffer(), TransformStamped()
+    sent.header.frame_id, sent.child_frame_id = "world", "carrot"
+    sent.transform.rotation.w = 1.0
+    for second in range(20):
+        sent.header.stamp.sec = second + 1
+        buffer.set_transform(sent, "test")
+        with pytest.raises(ExtrapolationException):
+            buffer.lookup_transform("world", "carrot", Time(seconds=second + 1, nanoseconds=10**8))
+        buffer.lookup_transform("world", "carrot", Time(seconds=second + 1))
+    assert "is not there yet" not in caplog.text
 
 
 def test_no_more_frames_are_kept_than_the_bound() -> None:
