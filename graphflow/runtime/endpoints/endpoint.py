@@ -8,7 +8,8 @@ from asyncio import Future
 from collections import Counter, deque
 from collections.abc import Callable
 
-from graphflow.analysis.user_code import users_frame
+from graphflow.analysis.syntax import syntax_of
+from graphflow.analysis.user_code import is_users, users_frame
 from graphflow.errors import ClosedError, DecodeError
 from graphflow.executor.runner import Runner, RunnerSpec
 from graphflow.machines.cache import GraphChange
@@ -233,9 +234,16 @@ def _nothing() -> None:
 
 def _how_to_run() -> str:
     """Say that a node does not run, and where its endpoints are used, from the code that uses one too early."""
-    caller = users_frame(sys._getframe())
-    if caller is not None and caller.f_code.co_name == "__init__":
-        return "does not run yet in __init__; do this in async def on_start(self), or in a handler"
+    frame = users_frame(sys._getframe())
+    while frame is not None:
+        if frame.f_code.co_name == "__init__" and is_users(frame.f_code.co_filename):
+            from graphflow.analysis.mistakes.calls.called_early import results_passed  # most programs never need it
+
+            early = dict(results_passed(syntax_of(frame.f_code.co_filename).module, is_of_threads=False))
+            cause = early.get(frame.f_lineno)
+            way = f"line {frame.f_lineno}: {cause}" if cause else "do this in async def on_start(self), or in a handler"
+            return f"does not run yet in __init__; {way}"
+        frame = frame.f_back
     return (
         "is not running; use this from its handlers and tasks, which graphflow.run(node) runs, "
         "or in a script within async with graphflow.running(node):"

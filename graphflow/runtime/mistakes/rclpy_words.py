@@ -340,10 +340,6 @@ def with_argument_hints(function: Callable[P, T]) -> Callable[P, T]:
         for word in kwargs.keys() - named:
             if hint := translation(word, "keywords"):
                 raise DeclarationError(f"{here()}: {called} has no {word}=; {hint}")
-        for policy in (kwargs.keys() - named) & _POLICIES:
-            raise DeclarationError(
-                f"{here()}: {called} has no {policy}=: it belongs to qos=Qos(depth=10, {policy}=...)"
-            )
         if len(args) > len(first):
             if called == "Param" and isinstance(args[1], type):
                 way = f"the default decides it: write Param({args[2]!r}, ...)"
@@ -380,6 +376,8 @@ def _fault(function: Callable[..., object], args: tuple[Any, ...], kwargs: dict[
         return ""
     taken = [name for name in signature.parameters if name != "self"]
     strange = [word for word in kwargs if word not in taken]
+    if strange and strange[0] in _POLICIES:
+        return f"has no {strange[0]}=, which belongs to qos=Qos(depth=10, {strange[0]}=...)"
     if strange:
         near = nearest(strange[0], taken)
         return f"has no {strange[0]}={f' (but {near}=)' if near else ''}"

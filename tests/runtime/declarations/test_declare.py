@@ -52,7 +52,7 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: Param(anything(None)), "None cannot be a parameter: use a bool, int, float, str, bytes, or a list of one"),
     (
         lambda: anything(Publisher)(String, "words", reliability="best_effort"),
-        "Publisher has no reliability=: it belongs to qos=Qos(depth=10, reliability=...)",
+        "Publisher has no reliability=, which belongs to qos=Qos(depth=10, reliability=...)",
     ),
     (lambda: Param(anything([])), "an empty list has no type"),
     (lambda: Param(anything([1, "a"])), "[1, 'a'] cannot be a parameter"),

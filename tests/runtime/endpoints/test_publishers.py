@@ -128,6 +128,28 @@ def test_a_message_that_a_constructor_publishes() -> None:
         Early()
 
 
+def test_a_message_of_a_handler_that_a_constructor_calls() -> None:
+    """The line that calls it is the cause, and is told with the form that passes it on."""
+
+    class Early(Node):
+        words = Publisher(String, "chatter")
+
+        def __init__(self, *, is_passed: bool) -> None:
+            super().__init__()
+            if is_passed:
+                self.create_timer(1.0, self.tick())  # type: ignore[func-returns-value, arg-type]
+            self.tick()
+
+        def tick(self) -> None:
+            self.words.publish(String())
+
+    line = Early.__init__.__code__.co_firstlineno + 3
+    with pytest.raises(ClosedError, match=rf"in __init__; line {line}: create_timer\(.*\) calls tick at once"):
+        Early(is_passed=True)
+    with pytest.raises(ClosedError, match="does not run yet in __init__; do this in async def on_start"):
+        Early(is_passed=False)
+
+
 async def test_publishing_needs_a_running_node(graph: Graph) -> None:
     """Publishing before the start and after the stop raises an error and is not counted."""
     node = Speaker()

@@ -69,25 +69,11 @@ def _waits(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str, str]
     with suppress(Unknown):
         source = ClassSource.of(cls)
         for node, parents in walk(definition):
-            handler = _decorators(next((p for p in parents if isinstance(p, FunctionNode)), None))
+            yield from _in_handlers(cls, definition, source, node, parents)
             match node:
                 case ast.Await(value=ast.Attribute() as thing) if is_own(thing) and not _is_limited(parents):
                     if text := _of_object(source, thing.attr, ""):
                         yield node.lineno, thing.attr, f"{cls.__name__} waits for self.{thing.attr}, and {text}"
-                case ast.AsyncFor(iter=ast.Attribute() as thing) if is_own(thing) and handler & _REPEATED:
-                    if isinstance(inspect.getattr_static(cls, thing.attr, None), Subscription) and not _may_leave(node):
-                        text = f"this loop never ends, so that the {' '.join(handler & _REPEATED)} runs once"
-                        yield node.lineno, thing.attr, f"{text}: read self.{thing.attr} in a method with @task"
-                case ast.While(test=ast.Constant(value=True)) if handler & _ANSWERED and not _may_leave(node):
-                    what = "message" if "subscription" in handler else "request"
-                    text = f"this loop never ends, so that only one {what} is handled"
-                    yield node.lineno, "", f"{text}: let the handler return, and loop in a method with @task"
-                case ast.Await(
-                    value=ast.Call(func=ast.Attribute(value=ast.Attribute() as thing, attr="get"), args=[])
-                ) if is_own(thing) and "task" in handler and not any(isinstance(p, LOOPS) for p in parents):
-                    if _is_filled_again(definition, source, thing.attr):
-                        text = f"this task takes one item of self.{thing.attr} and ends"
-                        yield node.lineno, thing.attr, f"{text}; for all of them, write while True: around it"
                 case ast.Call(func=ast.Attribute(value=ast.Attribute() as thing, attr=method), args=[], keywords=[]):
                     if is_own(thing) and _is_unbounded(parents) and (text := _of_object(source, thing.attr, method)):
                         yield node.lineno, thing.attr, f"{cls.__name__} waits for self.{thing.attr}, and {text}"
@@ -96,6 +82,27 @@ def _waits(cls: type, definition: ast.ClassDef) -> Iterator[tuple[int, str, str]
                     if flag and _stays(cls, source, flag, staying):
                         text = f"nothing in {cls.__name__} sets it to anything but {staying[0]}"
                         yield node.lineno, flag, f"this loop waits for self.{flag}, and {text}"
+
+
+def _in_handlers(
+    cls: type, definition: ast.ClassDef, source: ClassSource, node: ast.AST, parents: Sequence[ast.AST]
+) -> Iterator[tuple[int, str, str]]:
+    """Find loops that keep a handler from running again, and workers that take one item."""
+    handler = _decorators(next((p for p in parents if isinstance(p, FunctionNode)), None))
+    match node:
+        case ast.AsyncFor(iter=ast.Attribute() as thing) if is_own(thing) and handler & _REPEATED:
+            if isinstance(inspect.getattr_static(cls, thing.attr, None), Subscription) and not _may_leave(node):
+                text = f"this loop never ends, so that the {' '.join(handler & _REPEATED)} runs once"
+                yield node.lineno, thing.attr, f"{text}: read self.{thing.attr} in a method with @task"
+        case ast.While(test=ast.Constant(value=True)) if handler & _ANSWERED and not _may_leave(node):
+            what = "message" if "subscription" in handler else "request"
+            text = f"this loop never ends, so that only one {what} is handled"
+            yield node.lineno, "", f"{text}: let the handler return, and loop in a method with @task"
+        case ast.Await(value=ast.Call(func=ast.Attribute(value=ast.Attribute() as thing, attr="get"), args=[])):
+            is_once = "task" in handler and not any(isinstance(parent, LOOPS) for parent in parents)
+            if is_own(thing) and is_once and _is_filled_again(definition, source, thing.attr):
+                text = f"this task takes one item of self.{thing.attr} and ends"
+                yield node.lineno, thing.attr, f"{text}; for all of them, write while True: around it"
 
 
 def _is_unbounded(parents: Sequence[ast.AST]) -> bool:
