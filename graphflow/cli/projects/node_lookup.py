@@ -93,7 +93,8 @@ def _by_name(what: str, root: Path, words: Sequence[str]) -> type[Node]:
     if what.rpartition(".")[2][:1].isupper():
         module, _, name = what.rpartition(".")
         meant = nearest_module(module or name.lower(), str(root)) or module or f"nodes.{name.lower()}"
-        raise UsageFault(f"{what!r}: write MODULE:CLASS, {_class_in(root, name) or f'{meant}:{name}'}")
+        found = "" if module else _class_in(root, name)
+        raise UsageFault(f"{what!r}: write MODULE:CLASS, {found or f'{meant}:{name}'}")
     return _dotted(what) if "." in what else _node_by_name(what, root, words)
 
 
