@@ -23,7 +23,7 @@ class GraphCommand(click.Command):
         except click.NoSuchOption as error:
             text = as_argument(error.option_name, args)
             known = [word for param in self.params for word in param.opts]
-            if error.option_name == "-p" and text is not None:
+            if error.option_name == "-p" and text is not None and not text.startswith("p:="):
                 way = f"An argument of the graph is written as {text}. {OF_NODES['-p']}"
                 raise click.NoSuchOption("-p", way, ctx=ctx) from None
             if error.option_name in OF_NODES:

@@ -48,6 +48,10 @@ RING_ANYWAY = 4
 """Checks between two pings of a foreign loop that seems idle: a built-in function that blocks it looks the same."""
 
 
+def _nothing() -> None:
+    """Do nothing at a check."""
+
+
 class Watchdog:
     """The watch over one process's event loop.
 
@@ -75,7 +79,7 @@ class Watchdog:
         if it was not blocked."""
         self._told: set[str] = set()
         """Lines that were reported for blocking the loop often."""
-        self.on_look: list[Callable[[], None]] = []
+        self.on_look: Callable[[], None] = _nothing
         """Called at each check, on the watching thread."""
         self.late = 0
         """Number of pings that took more than `ANSWER_WITHIN` seconds."""
@@ -105,8 +109,7 @@ class Watchdog:
             lost = time.monotonic() - began - pause
             if lost > REPORT_AFTER:
                 logger.warning("nothing in this process could run for %.1f s: %s", lost, _HELD)
-            for look in self.on_look:
-                look()
+            self.on_look()
             if self._is_busy():
                 self._ping()
             else:

@@ -35,6 +35,8 @@ def test_an_argument_as_an_option(machine: Machine, verb: str) -> None:
     ("words", "told"),
     [
         (["--params-file", "p.yaml"], "A parameter file belongs to a node of the graph file: params_file: FILE.yaml"),
+        (["-p", "rate:=2.0"], "An argument of the graph is written as rate:=2.0. A parameter of a node goes below"),
+        (["-p", "rate=2.0"], "Error: A parameter of a node goes below its params:, or is set by graphflow param set"),
         (["--ros-args", "-p", "rate:=2.0"], "A graph file has params: and remap: for each node"),
     ],
 )

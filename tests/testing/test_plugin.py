@@ -269,7 +269,7 @@ def test_a_limit_of_its_own(pytester: pytest.Pytester, monkeypatch: pytest.Monke
 
 
 def test_a_test_that_inspects_too_early(pytester: pytest.Pytester) -> None:
-    """What came right after it is told."""
+    """The messages right after it are told."""
     result = run(
         pytester,
         """

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from graphflow.cli import exits, output
-from graphflow.errors import GraphFileError, UsageFault
+from graphflow.cli.graphs.sources import place_of
+from graphflow.errors import GraphFileError, Place, Problem, UsageFault
 from graphflow.graph import params_file
 from graphflow.reading import lenient_text
 from graphflow.workspace.packages import find_workspace
@@ -31,7 +32,7 @@ def check_parameters(file: Path, *, as_json: bool) -> int:
     try:
         sections = params_file.read(file, shown(file))
     except GraphFileError as error:
-        return _report(file, [str(problem) for problem in sorted(error.problems)], "", as_json=as_json)
+        return _report(file, sorted(error.problems), "", as_json=as_json)
     names = [section.pattern for section in sections]
     more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
     return _report(file, [], f"parameters of {', '.join(names[:_SHOWN])}{more}", as_json=as_json)
@@ -47,20 +48,28 @@ def check_setup(file: Path, *, as_json: bool) -> int:
     package = next((p for p in find_workspace(file).packages.values() if p.folder.resolve() == folder), None)
     if package is None:
         raise UsageFault(f"{file} is not that of a ROS package: there is no package.xml beside it")
-    faults = [fault for name in package.executables if (fault := package.fault_of(name))]
-    faults += [fault for name in package.executables if (fault := package.copy_fault(name))]
+    faults = [fault for name in package.executables if (fault := package.fault_of(name) or package.copy_fault(name))]
+    problems = [_problem(fault) for fault in faults]
     if why := package.why_no_executable:
-        faults.append(f"{file}: {why.removeprefix('; ')}")
+        problems.append(Problem(Place(str(file)), why.removeprefix("; ").removeprefix(f"{package.setup.file} ")))
     names = ", ".join(package.executables) or "none"
-    return _report(file, faults, f"executables: {names}", as_json=as_json)
+    return _report(file, problems, f"executables: {names}", as_json=as_json)
 
 
-def _report(file: Path, problems: Sequence[str], found: str, *, as_json: bool) -> int:
+def _problem(fault: str) -> Problem:
+    """Convert the fault of an executable, which begins with its place."""
+    place, _, text = fault.partition(": ")
+    name, _, line = place.rpartition(":")
+    return Problem(Place(name, int(line)) if line.isdecimal() else Place(place), text)
+
+
+def _report(file: Path, problems: Sequence[Problem], found: str, *, as_json: bool) -> int:
     if as_json:
-        output.as_json({"problems": [{"message": text} for text in problems], "remarks": [], "deadlocks": []})
+        rows = [{"message": problem.message, **place_of(problem.place)} for problem in problems]
+        output.as_json({"problems": rows, "remarks": [], "deadlocks": []})
     else:
-        for text in problems:
-            output.talk(text)
+        for problem in problems:
+            output.talk(str(problem))
         count = f"{len(problems)} problem{'s' * (len(problems) != 1)}" if problems else "no problems"
         output.data(f"{file}: {', '.join(filter(None, [found, count]))}")
     return exits.USAGE if problems else exits.OK

@@ -242,10 +242,10 @@ def type_(name: str) -> int:
     with View(domain_id()) as view:
         cache = view.cache
         topics = cache.topics(hidden=True)
-        alone = view.nobody_here()
+        near = "" if full in topics else cache.instead(full, topics) or view.nobody_here()
     output.lines(topics.get(full, []))
     if full not in topics:
-        output.error(f"Unknown topic '{full}'{cache.instead(full, topics) or alone}")
+        output.error(f"Unknown topic '{full}'{near}")
     return exits.OK if full in topics else exits.FAILED
 
 

@@ -229,7 +229,7 @@ def _check_remaps(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
     names = resolver(node)
     full = {names.full(e.name): e.name for e in interface.endpoints}
     pair = {rule.match: rule for rule in node.remaps}
-    if pair.keys() == {"from", "to"}:  # as in launch files
+    if pair.keys() == {"from", "to"} and not any(_fits(match, names, full, interface) for match in pair):
         way = f"remap: {{{pair['from'].replacement}: {pair['to'].replacement}}}"
         yield Problem(pair["from"].place, f"a remap is written as a pair: {way}")
         return

@@ -82,7 +82,7 @@ def _origin(coroutine: Any, ended_in: FrameType | None) -> tuple[str, str]:
 
 def _call_in(line: str, name: str) -> str:
     """Return the call of a function in a line; the line itself where it begins a block, or the call goes on below."""
-    found = re.search(rf"[\w.]*\b{name}\(", line)
+    found = re.search(rf"[\w.]*\b{re.escape(name)}\(", line)
     if found is None or line.startswith("async with "):
         return line
     depth = 0

@@ -48,6 +48,9 @@ def test_a_file_of_parameters(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     told = capsys.readouterr()
     assert "did you mean 'ros__parameters', with two _ in a row?" in told.err
     assert told.out == f"{file}: 1 problem\n"
+    assert check_parameters(file, as_json=True) == exits.USAGE
+    [problem] = json.loads(capsys.readouterr().out)["problems"]
+    assert (problem["line"], problem["column"]) == (2, 3)
 
 
 def test_a_setup_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -69,4 +72,10 @@ def test_a_setup_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     file.write_text(SETUP.format(""))
     assert check_setup(file, as_json=True) == exits.USAGE
     [problem] = json.loads(capsys.readouterr().out)["problems"]
-    assert problem["message"].startswith(f"{file}: ")
+    assert (problem["file"], problem["line"]) == (str(file), 0)
+    assert problem["message"].startswith("names no executable: add 'go = lamp.go:main'")
+    file.write_text(SETUP.format("'on = lamp.on:main'"))
+    assert check_setup(file, as_json=True) == exits.USAGE
+    [problem] = json.loads(capsys.readouterr().out)["problems"]
+    assert (problem["file"], problem["line"]) == (str(file), 2)
+    assert problem["message"].startswith("on is lamp.on:main, and there is no ")

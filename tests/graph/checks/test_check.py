@@ -135,6 +135,13 @@ def test_what_does_not_fit(line: str, problem: str) -> None:
     assert chaser(line) == [problem]
 
 
+def test_topics_that_are_called_from_and_to() -> None:
+    """A class may have them, and they are remapped like others."""
+    ends = tuple(endpoint("subscription", name, "std_msgs/msg/String") for name in ("from", "to"))
+    text = "nodes: {/c: {class: 'a.b:Chaser', remap: {from: goal, to: /x}}}\n"
+    assert problems(text, {"a.b:Chaser": replace(CHASER, endpoints=ends)}) == []
+
+
 def test_parameters_whose_names_are_made() -> None:
     """They are left to the node, as others are not, however they are set."""
     made = {"a.b:Chaser": replace(CHASER, made_params=("*.radius",))}

@@ -70,6 +70,11 @@ def test_the_call_in_a_line(line: str, call: str) -> None:
     assert unawaited._call_in(line, "go") == call
 
 
+def test_a_name_that_is_no_identifier() -> None:
+    """A decorator may give a function any name."""
+    assert unawaited._call_in("self.go(1)", "go(*") == "self.go(1)"
+
+
 def test_a_coroutine_that_was_kept(caplog: pytest.LogCaptureFixture) -> None:
     """Its line is known from the second time on."""
     keeps()

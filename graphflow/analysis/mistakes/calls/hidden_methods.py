@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 _BASES = ("Node", "LifecycleNode")
-_CALLED = {"declare_parameter", "declare_parameters", "undeclare_parameter", "get_parameter", "get_parameters"}
-_CALLED |= {"get_parameter_or", "get_parameters_by_prefix", "has_parameter", "set_parameters", "describe_parameters"}
-_CALLED |= {"set_parameters_atomically", "get_name", "get_namespace", "get_fully_qualified_name", "get_clock"}
-_CALLED |= {"get_logger", "create_publisher", "create_subscription", "create_service", "create_client", "add_waitable"}
+_CALLED = {"declare_parameter", "declare_parameters", "get_parameter", "get_parameters", "has_parameter"}
+_CALLED |= {"set_parameters", "set_parameters_atomically", "describe_parameters", "get_name", "get_namespace"}
+_CALLED |= {"get_fully_qualified_name", "get_clock", "get_logger", "create_publisher", "create_subscription"}
+_CALLED |= {"create_service", "create_client", "add_waitable"}
 """Methods that rclpy's nodes, executors, actions and parameter services call."""
 
 

@@ -10,16 +10,19 @@ from graphflow.analysis.syntax import blocks, is_nested, nodes_in, walk
 
 def kept_locks(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines with such a `return`; each comes with the `with` that releases the lock in any case."""
-    for node in nodes_in(code):
-        for block in blocks(node):
-            for begin, statement in enumerate(block):
-                owner, is_awaited = _owner(statement, "acquire")
-                rest = block[begin + 1 :]
-                end = next((i for i, later in enumerate(rest) if owner and _owner(later, "release")[0] == owner), 0)
-                for between in rest[:end]:
-                    if not _releases(between, owner):
-                        way = f"write {'async ' * is_awaited}with {owner}: in place of acquire() and release()"
-                        yield from ((line, f"this return keeps {owner}: {way}") for line in _returns(between))
+    for block in (block for node in nodes_in(code) for block in blocks(node)):
+        for number, statement in enumerate(block):
+            owner, is_awaited = _owner(statement, "acquire")
+            way = f"write {'async ' * is_awaited}with {owner}: in place of acquire() and release()"
+            for between in _until_release(block[number + 1 :], owner) if owner else ():
+                if not _releases(between, owner):
+                    yield from ((line, f"this return keeps {owner}: {way}") for line in _returns(between))
+
+
+def _until_release(rest: list[ast.stmt], owner: str) -> list[ast.stmt]:
+    """Return the statements before the one that releases a lock; none if the block does not release it."""
+    ends = (number for number, statement in enumerate(rest) if _owner(statement, "release")[0] == owner)
+    return rest[: next(ends, 0)]
 
 
 def _owner(statement: ast.stmt, method: str) -> tuple[str, bool]:

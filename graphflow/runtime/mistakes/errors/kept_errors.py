@@ -34,7 +34,7 @@ class Failed(NamedTuple):
 
 def report_kept_errors(context: Context) -> None:
     """Report such errors on a context's loop within a second."""
-    context.search.watchdog.on_look.append(KeptErrors(context.loop).look)
+    context.search.watchdog.on_look = KeptErrors(context.loop).look
 
 
 def failed_tasks(tasks: Iterable[Task[object]]) -> Iterator[Failed]:

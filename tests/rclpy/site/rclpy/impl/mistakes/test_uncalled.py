@@ -95,7 +95,7 @@ def test_a_program_that_an_error_ends(
 def test_an_error_of_a_method_that_is_replaced(
     node: Node, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """What the source shows of the method in which it was raised is the cause, and is told."""
+    """The remark on the method in which it was raised is told, since that is the cause."""
     file, space = tmp_path / "lamp.py", {"__name__": "lamp"}
     file.write_text(TWICE)
     exec(compile(TWICE, str(file), "exec"), space)
