@@ -282,7 +282,7 @@ def findings_in(path: Path) -> list[Finding]:
 def _idle_loops(tree: ast.Module) -> set[int]:
     """Return the lines of loops that never run: `while not client.wait_for_service:`, whose method is not called."""
     tests = [node.test for node in nodes_in(tree) if isinstance(node, ast.While)]
-    negated = {test.lineno for test in tests if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not)}
+    negated = {test.lineno for test in tests if isinstance(test, ast.UnaryOp)}
     return negated & {line for line, _ in uncalled_methods(tree)} if negated else set()
 
 

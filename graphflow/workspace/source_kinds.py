@@ -33,8 +33,6 @@ def uses_ros(file: Path) -> bool:
         if not roots.isdisjoint(_ROS):
             return True
         if "graphflow" in roots:
-            if current is file:
-                return False
             continue
         if any(module.split(".")[1:2] in ([kind] for kind in _KINDS) for module in modules):
             return True

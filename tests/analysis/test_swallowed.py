@@ -129,6 +129,11 @@ def test_a_loop_that_goes_on_after_a_cancellation(loop: str, handler: str) -> No
     assert len(_endless(loop, "await self.call()", handler)) == 1
 
 
+def test_a_loop_without_a_condition() -> None:
+    """Nothing that a handler sets can end it."""
+    assert _endless("while True", "await self.call()", "except: self.on = False") == [7]
+
+
 @pytest.mark.parametrize(
     ("loop", "body", "handler"),
     [

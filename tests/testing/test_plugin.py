@@ -230,13 +230,18 @@ def test_an_error_ends_at_the_tests_line(pytester: pytest.Pytester) -> None:
         async def test_it(graph):
             assert graph.tap("a", "b").latest
 
+        async def test_latest(graph):
+            from graphflow.msgs.std_msgs.msg import String
+            assert graph.tap(String, "words").latest
+
         async def test_forgotten(graph):
             graph.settle()
         """
     result = run(pytester, text)
-    result.assert_outcomes(failed=2)
+    result.assert_outcomes(failed=3)
     shown = result.stdout.str()
     assert "checks.py" not in shown
+    assert "testing/graph.py" not in shown
     assert "plugin.py" not in shown
     result.stdout.fnmatch_lines(['> *assert graph.tap("a", "b").latest', "E *"])
     assert "checks.py" in run(pytester, text, "--full-trace", "--tb=short").stdout.str()

@@ -192,7 +192,7 @@ def _of_nodes(ends: list[_End], sure: set[str]) -> Iterator[tuple[str, Problem]]
     reported: set[str] = set()
     for end in sorted(ends, key=lambda end: (end.remapped_at is None, end.kind not in _NEEDS_ONE)):
         others = _others(end, ends)
-        if end.name in others or end.name in sure or end.name in _EVERYWHERE:
+        if end.name in others or end.name in _EVERYWHERE:
             continue
         near = _nearest(end.name, (others | sure) - {same.name for same in ends if same.kind == end.kind})
         if near not in reported if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:

@@ -42,8 +42,11 @@ ADDER = Interface(
     endpoints=(endpoint("publisher", "output", STRING), endpoint("subscription", "input", STRING)),
 )
 NUMBERED = Interface("a:Numbered", "numbered", CODE, endpoints=(endpoint("subscription", "chatter2", STRING),))
+COUNTED = Interface(
+    "a:Counted", "counted", CODE, endpoints=(endpoint("subscription", "chatter", "std_msgs/msg/Int32"),)
+)
 ANY = Interface("a:Any", "any", CODE, dynamic_names=("/chater",))
-KNOWN: Interfaces = {i.class_path: i for i in (TALKER, LISTENER, SLIPPED, NUMBERED, ANY, ADDER)}
+KNOWN: Interfaces = {i.class_path: i for i in (TALKER, LISTENER, SLIPPED, NUMBERED, ANY, ADDER, COUNTED)}
 GRAPH = "nodes:\n  /t: {class: a:Talker}\n  /l: {class: a:Listener}\n"
 
 
@@ -100,6 +103,7 @@ def test_two_that_do_not_meet(talker: str, listener: str, expected: str) -> None
         ("/left/t: {class: a:Talker}", "/right/t: {class: a:Talker}", "/right/l: {class: a:Listener}"),
         ("/left/t: {class: a:Talker}", "/left/l: {class: a:Listener}", "/right/l: {class: a:Listener}"),
         ("/left/t: {class: a:Talker}", "/right/a: {class: a:Adder}"),
+        ("/left/t: {class: a:Talker}", "/right/c: {class: a:Counted}"),
     ],
 )
 def test_others_that_meet(nodes: tuple[str, ...]) -> None:

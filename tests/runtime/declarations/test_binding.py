@@ -79,6 +79,19 @@ async def test_a_check_of_values_from_outside(graph: Graph) -> None:
     with pytest.raises(ParameterError, match=r"'rate' = 11\.0: the listener is only human \(from graph\.make\)$"):
         await graph.start(graph.make(Follower, rate=11.0))
 
+    class Own(Follower):
+        def __init__(self) -> None:
+            super().__init__()
+            self.is_full = False
+            self.rate = 5.0
+            self.is_full = True
+
+        def not_too_fast(self, rate: float) -> None:
+            if self.is_full:
+                raise ValueError("no more")
+
+    await graph.start(Own())  # it was checked when it was set
+
     class Fast(Follower):
         rate = Param(20.0)
 

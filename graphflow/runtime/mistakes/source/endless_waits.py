@@ -53,7 +53,7 @@ def endless_waits(cls: type, definition: ast.ClassDef, module: ast.Module) -> It
         module: The file with the definition.
     """
     for line, name, text in _waits(cls, definition):
-        if not name or not has_attribute(module, name, outside=definition):
+        if not has_attribute(module, name, outside=definition):
             yield line, name, text
 
 

@@ -32,6 +32,12 @@ def test_a_counter_that_stays(name: str) -> None:
     assert _told(f"{name} = 0", "pass", line) == told
 
 
+def test_the_first_line_of_a_counter() -> None:
+    """It may be in a block."""
+    [(line, _)] = _told("pass", "self.count = 0", "if True:\n            print(self.count)\n        print(self.count)")
+    assert line == 8
+
+
 @pytest.mark.parametrize(
     ("in_class", "first", "line", "rest"),
     [

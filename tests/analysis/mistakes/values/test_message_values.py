@@ -64,6 +64,7 @@ def test_a_value_of_another_type(kind: str, value: str, told: str) -> None:
     [
         "return msg.data == 'go'",
         "return msg.text == 5",
+        "return other.data == 5",
         "return msg is None",
         "return msg == self.last",
         "msg = msg.data; return msg == 'go'",

@@ -15,6 +15,8 @@ class Lamp(Node):
         self.declare_parameter("mode", "auto")
         self.declare_parameter("rate", 2.0)
         self.declare_parameter("other", make())
+        self.declare_parameter("twice", 1)
+        self.declare_parameter("twice", "one")
     def tick(self):
         {}
 """
@@ -71,6 +73,8 @@ def test_comparisons_that_never_hold(line: str, told: str) -> None:
         "self.get_parameter('rate').value == 2",
         "self.get_parameter('enabled').value == 1",
         "self.get_parameter('other').value == 'a'",
+        "self.get_parameter('twice').value == 1",
+        "self.get_parameter('twice').value == 'one'",
         "self.get_parameter('unknown').value == 'a'",
         "self.get_parameter('mode').value is None",
         "self.get_parameter(name) == 'a'.upper()",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 import logging
+from typing import Any
 
 import pytest
 
@@ -42,16 +43,20 @@ async def test_it_is_told_at_the_second_look(graphflow_runner: asyncio.Runner, c
 async def test_tasks_that_are_no_loss(graphflow_runner: asyncio.Runner, caplog: Caplog) -> None:
     """They were awaited, cancelled, or belong to a node that has stopped, or to a library; or they run on."""
     watch = KeptErrors(asyncio.get_running_loop())
+    space: dict[str, Any] = {}
+    exec(compile("async def work():\n    raise ValueError('boom')", "/x/site-packages/lib.py", "exec"), space)
+    installed = asyncio.create_task(space["work"]())
     library = asyncio.create_task(asyncio.wait_for(fail(ValueError("boom")), 1.0))
     tasks = [asyncio.create_task(fail(error)) for error in (ValueError("boom"), ClosedError("the node has stopped"))]
     cancelled, runs = (asyncio.create_task(asyncio.sleep(10.0)) for _ in range(2))
     cancelled.cancel()
-    await asyncio.wait([library, *tasks, cancelled], timeout=5.0)
+    await asyncio.wait([installed, library, *tasks, cancelled], timeout=5.0)
     with pytest.raises(ValueError, match="boom"):
         await tasks[0]
     watch.look()
     watch.look()
     assert told(caplog) == []
     runs.cancel()
-    with pytest.raises(ValueError, match="boom"):
-        await library
+    for task in (library, installed):
+        with pytest.raises(ValueError, match="boom"):
+            await task

@@ -246,6 +246,17 @@ def test_a_node_that_nobody_spins(node: Node, caplog: Caplog) -> None:
     assert over.startswith("/node is spun after ")
 
 
+def test_a_node_beside_one_that_a_thread_spins(node: Node, caplog: Caplog) -> None:
+    """The program is elsewhere, but another spin would not help: there is one already."""
+    other = Node("other")
+    other.create_timer(0.01, lambda: None)
+    with spun(node):
+        until(lambda: told(caplog))
+    [text] = told(caplog)
+    assert text.startswith("/other has not been spun for ")
+    assert "; spin all nodes together: executor = SingleThreadedExecutor()" in text
+
+
 def test_a_node_beside_the_one_that_is_spun(node: Node, caplog: Caplog) -> None:
     """Told with where the others are spun, by a thread that does nothing else."""
     other = Node("other")
