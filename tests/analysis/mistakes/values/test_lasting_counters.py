@@ -36,6 +36,8 @@ def test_the_first_line_of_a_counter() -> None:
     """It may be in a block."""
     [(line, _)] = _told("pass", "self.count = 0", "if True:\n            print(self.count)\n        print(self.count)")
     assert line == 8
+    [(line, _)] = _told("pass", "self.count = 0", "print(self.count)\n        print(self.count)")
+    assert line == 7
 
 
 @pytest.mark.parametrize(
