@@ -137,6 +137,21 @@ def syntax_of(file: str) -> Syntax:
         return Syntax(parsed(source.read()))
 
 
+def loops_at(syntax: Syntax, first: int, line: int) -> list[ast.For | ast.While]:
+    """Return the loops around a line, the innermost last.
+
+    Args:
+        first: The first line of the code that has the line, as in `co_firstlineno`.
+    """
+    return [
+        loop
+        for function in (*syntax.functions, syntax.module)
+        if (first_line(function) if isinstance(function, FunctionNode) else 1) == first
+        for loop in nodes_in(function)
+        if isinstance(loop, (ast.For, ast.While)) and loop.lineno <= line <= (loop.end_lineno or 0)
+    ]
+
+
 def parsed(text: str) -> ast.Module:
     """Parse a source in any thread.
 

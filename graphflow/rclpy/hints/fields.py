@@ -86,6 +86,8 @@ def wrong_value(error: BaseException, frames: list[FrameType]) -> str:
     target, given = (set_[1], set_[2].strip()) if set_ is not None else (name, "...")
     if type(value).__name__ == "Parameter":
         return f"a parameter's value is in .value: {target} = {given}.value"
+    if type(value).__name__ == "ParameterValue":
+        return f"write {target} = get_parameter('name').value in place of .get_parameter_value()"
     if isinstance(cls, type) and issubclass(cls, StrictMessage):
         return _part(target, given, value, cls)
     if isinstance(value, StrictMessage) and hasattr(value, "data"):

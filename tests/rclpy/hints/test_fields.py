@@ -31,6 +31,10 @@ ONE = "dimensions, and the field one: write "
         ("m.data = words[1]  # the second", "write m.data = int(words[1])"),
         ("m.data = Int32(data=1)", "Int32(data=1) is a message: write m.data = Int32(data=1).data"),
         ("m.data = param", "a parameter's value is in .value: m.data = param.value"),
+        (
+            "t.linear.x = param.get_parameter_value()",
+            "write t.linear.x = get_parameter('name').value in place of .get_parameter_value()",
+        ),
         ("h.stamp = clock.now()", "write h.stamp = clock.now().to_msg()"),
         ("h.stamp = time.time()", "write h.stamp = self.get_clock().now().to_msg()"),
         ("h.stamp = n", "h.stamp is a Time: set its fields, as in h.stamp.sec = ..."),

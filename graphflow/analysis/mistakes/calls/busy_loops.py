@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from graphflow.analysis.syntax import last_name, nodes_in
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 
 _LONGEST_PAUSE = 0.2
 """Seconds that a loop around `spin_once` may sleep: beside it, most sensors publish more often."""
@@ -13,13 +13,14 @@ _LONGEST_PAUSE = 0.2
 
 def busy_loops(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines of such loops; each comes with a sentence."""
-    for loop in nodes_in(code):
+    for loop, parents in walk(code):
         if isinstance(loop, ast.While):
-            yield from _without_pause(loop)
+            method = next((one for one in reversed(parents) if isinstance(one, FunctionNode)), None)
+            yield from _without_pause(loop, method)
             yield from _between_spins(loop)
 
 
-def _without_pause(loop: ast.While) -> Iterator[tuple[int, str]]:
+def _without_pause(loop: ast.While, method: FunctionNode | None) -> Iterator[tuple[int, str]]:
     match loop.body:
         case [ast.Expr(value=ast.Await(value=ast.Call(func=ast.Attribute(attr="sleep") as sleep, args=[time])))]:
             if _number(time) == 0:
@@ -33,7 +34,16 @@ def _without_pause(loop: ast.While) -> Iterator[tuple[int, str]]:
                 yield loop.lineno, f"{text}; leave out timeout_sec, so that spin_once waits for a callback"
         case [ast.Pass()] if _only_reads(loop.test):
             text = "this loop never pauses, and nothing else runs in its thread"
-            yield loop.lineno, f"{text}; wait with an event"
+            yield loop.lineno, f"{text}; {_way_to_wait(method)}"
+
+
+def _way_to_wait(function: FunctionNode | None) -> str:
+    """Return the advice for a loop that waits for an attribute or a name, by the function that it is in."""
+    if isinstance(function, ast.AsyncFunctionDef):
+        return "await an asyncio.Event that the handler sets"
+    if function is not None and function.args.args and function.args.args[0].arg == "self":
+        return "go on in the callback that it waits for, or in a timer"
+    return "if a callback of a node ends it, call rclpy.spin_once(node) in it"
 
 
 def _between_spins(loop: ast.While) -> Iterator[tuple[int, str]]:

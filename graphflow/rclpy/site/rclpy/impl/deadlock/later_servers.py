@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from graphflow.analysis.class_source import Unknown, source_of
 from graphflow.analysis.frames import Frame
-from graphflow.analysis.syntax import FunctionNode, first_line, nodes_in, syntax_of
+from graphflow.analysis.syntax import FunctionNode, first_line, loops_at, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_users, short_place
 from graphflow.deadlock.closed_world.wakers import handlers_above
 from graphflow.deadlock.protocols import Subject
@@ -115,13 +115,12 @@ def comes_after(frames: Iterable[Frame]) -> str:
 
 def tries_forever(frame: Frame) -> bool:
     """Whether a frame's line is in a loop that ends only when something is available, or with the program."""
+    code = frame.f_code
     loops = [
-        node
-        for syntax in _syntaxes(frame.f_code.co_filename)
-        for function in (*syntax.functions, syntax.module)
-        if _code_line(function) == frame.f_code.co_firstlineno
-        for node in nodes_in(function)
-        if isinstance(node, ast.While) and node.lineno <= frame.f_lineno <= (node.end_lineno or 0)
+        loop
+        for syntax in _syntaxes(code.co_filename)
+        for loop in loops_at(syntax, code.co_firstlineno, frame.f_lineno)
+        if isinstance(loop, ast.While)
     ]
     return bool(loops) and _is_endless(loops[-1])
 

@@ -5,15 +5,19 @@ Neither is an error in ROS 2, where a node just falls silent. Each is reported o
 
 from __future__ import annotations
 
+import ast
+import linecache
 import logging
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 from weakref import WeakSet
 
 from graphflow.analysis.frames import Frame
+from graphflow.analysis.syntax import loops_at, nodes_in, syntax_of
 from graphflow.analysis.user_code import is_ours, is_users, short_place, where
 from graphflow.errors import Place
 from graphflow.rclpy.wake import Wake
@@ -164,7 +168,8 @@ class HeldUp:
                 time.monotonic()
             )  # it waits on rclpy, which reports that itself or by the deadlock search
             return None
-        kept = [word for entity in entities_of(node) if _is_ready(entity) and (word := _called(entity))]
+        is_polled = _polls(level, node)
+        kept = [word for one in entities_of(node) if (is_polled or _is_ready(one)) and (word := _called(one))]
         is_begun = not any(_is_init(frame, node) for frame in level.frames)
         thread = f"thread {stack.thread.name}"
         if (is_begun and not kept) or self._is_reported(stack.thread, "t", thread) or self.was_reported(name):
@@ -178,10 +183,9 @@ class HeldUp:
         else:
             who = "the program" if stack.thread is threading.main_thread() else thread
             is_spinning = stack.spins or any(other.spins for other in stacks())
-            way = _ONE_EXECUTOR if is_spinning else "have it call rclpy.spin(node)"
-            text = (
-                f"{name} has not been spun {for_long}, and {_joined(kept)} should be called: {who} is in {place}; {way}"
-            )
+            way = _ONE_EXECUTOR if is_spinning else _way_to_spin(level, node)
+            called = f"{_joined(kept)} {'cannot' if is_polled else 'should'} be called"
+            text = f"{name} has not been spun {for_long}, and {called}: {who} is in {place}; {way}"
         return _Report(text, f"{name} is spun")
 
     def _leaves(self, node: Node) -> None:
@@ -200,6 +204,40 @@ class HeldUp:
         else:
             text = "rclpy is shut down in %s before %s was spun, so %s could not be called: call %s before it"
             logger.warning(text, place, full_name(node), _joined(kept), spin)
+
+
+def _way_to_spin(level: Level, node: Node) -> str:
+    """Return the advice for a program that does not spin a node, by what the program does instead."""
+    name, frame = _name_of(level, node), level.innermost
+    if frame is not None and "input(" in linecache.getline(frame.f_code.co_filename, frame.f_lineno):
+        return f"spin it in a thread: threading.Thread(target=rclpy.spin, args=({name},), daemon=True).start()"
+    if any(_loops(level)):
+        return f"call rclpy.spin_once({name}, timeout_sec=0.1) in the loop there, in place of a sleep"
+    return f"have it call rclpy.spin({name})"
+
+
+def _polls(level: Level, node: Node) -> bool:
+    """Whether code reads an attribute of a node again and again, to wait for one of its callbacks."""
+    name = _name_of(level, node)
+    tests = [loop.test for loop in _loops(level) if isinstance(loop, ast.While)]
+    read = [part for test in tests for part in nodes_in(test) if isinstance(part, ast.Attribute)]
+    return any(isinstance(part.value, ast.Name) and part.value.id == name for part in read)
+
+
+def _name_of(level: Level, node: Node) -> str:
+    """Return the name of the variable that holds a node, as code would use it there."""
+    users = [frame for frame in level.frames if is_users(frame.f_code.co_filename)]
+    held = ((name, thing) for frame in reversed(users) for name, thing in frame.f_locals.items())
+    return next((name for name, thing in held if thing is node), "node")
+
+
+def _loops(level: Level) -> Iterator[ast.For | ast.While]:
+    """Yield the loops in which the user's code is, those of a function's callers included."""
+    for frame in level.frames:
+        code = frame.f_code
+        if is_users(code.co_filename):
+            with suppress(OSError, SyntaxError, ValueError):  # its source is not available
+                yield from loops_at(syntax_of(code.co_filename), code.co_firstlineno, frame.f_lineno)
 
 
 def _shut_down_in() -> Place | None:

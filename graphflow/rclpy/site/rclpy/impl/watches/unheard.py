@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from graphflow.rclpy.context_state import ContextState
     from graphflow.runtime.endpoints.threaded import ThreadedPublisher
     from rclpy.node import Node
+    from rclpy.publisher import Publisher
 
 BRIEF = 3.0
 """The lifetime in seconds below which a node is reported: one that lives longer had time to match."""
@@ -38,9 +39,17 @@ def _tell(node: Node) -> None:
             way = "if one should have, publish when publisher.get_subscription_count() is not 0"
             text = f"%s: no subscription has received the %d %s; {way}"
             logger.warning(text, endpoint.name, endpoint.published, many)
-        elif publisher.made_at is not None and endpoint.published and _is_kept_for_nobody(endpoint):
-            text = "%s: %s ends, and with it the message that it keeps for late subscriptions: keep it spinning"
+        elif endpoint.published and _is_kept_for_nobody(endpoint) and _is_users(publisher):
+            text = (
+                "%s: %s ends, and with it the message that it keeps for late subscriptions: keep it running, with "
+                "rclpy.spin(node)"
+            )
             logger.warning(text, endpoint.name, node.get_fully_qualified_name())
+
+
+def _is_users(publisher: Publisher) -> bool:
+    """Whether the user's code has created a publisher, itself or by a StaticTransformBroadcaster."""
+    return publisher.made_at is not None or publisher.endpoint.name == "/tf_static"
 
 
 def _is_kept_for_nobody(endpoint: ThreadedPublisher) -> bool:

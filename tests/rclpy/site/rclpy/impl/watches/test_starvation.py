@@ -178,6 +178,23 @@ class Endless(Node):
             self.get_logger().debug("tick")
 
 
+class Listener(Node):
+    """Waits for its subscription, and is not spun meanwhile."""
+
+    def __init__(self) -> None:
+        super().__init__("listener")
+        self.heard: String | None = None
+        self.create_subscription(String, "chat", self.hear, 10)
+
+    def hear(self, message: String) -> None:
+        self.heard = message
+
+    def wait(self) -> None:
+        end = time.monotonic() + LIMIT
+        while self.heard is None and time.monotonic() < end:
+            time.sleep(0.01)
+
+
 class Spins(Node):
     """Spins in its timer, and in `__init__` where that is asked for."""
 
@@ -242,8 +259,26 @@ def test_a_node_that_nobody_spins(node: Node, caplog: Caplog) -> None:
     text, over = told(caplog)
     assert text.startswith(f"/{node.get_name()} has not been spun for ")
     assert "timer <lambda> should be called: the program is in until.py:" in text
-    assert text.endswith("; have it call rclpy.spin(node)")
+    assert text.endswith("; call rclpy.spin_once(node, timeout_sec=0.1) in the loop there, in place of a sleep")
     assert over.startswith("/node is spun after ")
+
+
+def test_a_program_that_waits_for_a_callback(node: Node, caplog: Caplog) -> None:
+    """It polls what a callback sets: told, although no message has come."""
+    listener = Listener()
+
+    def call_later() -> None:
+        until(lambda: told(caplog))
+        listener.hear(String())
+
+    time.sleep(0.4)
+    assert told(caplog) == []
+    with in_thread(call_later):
+        listener.wait()
+    [text] = told(caplog)
+    assert "/listener has not been spun for 0." in text
+    assert ", and subscription hear cannot be called: the program is in test_starvation.py:" in text
+    assert text.endswith("; call rclpy.spin_once(self, timeout_sec=0.1) in the loop there, in place of a sleep")
 
 
 def test_a_node_beside_one_that_a_thread_spins(node: Node, caplog: Caplog) -> None:

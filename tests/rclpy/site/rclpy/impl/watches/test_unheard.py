@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from geometry_msgs.msg import TransformStamped
 from std_msgs.msg import String
+from tf2_ros import StaticTransformBroadcaster
 
 import rclpy
 from rclpy.impl.watches import unheard
@@ -43,8 +45,20 @@ def test_what_is_kept_for_late_subscriptions(node: Node, caplog: Caplog, is_hear
         Node("ear").create_subscription(String, "chat", print, latched)
     node.create_publisher(String, "chat", latched).publish(String())
     node.destroy_node()
-    text = "/chat: /node ends, and with it the message that it keeps for late subscriptions: keep it spinning"
+    text = (
+        "/chat: /node ends, and with it the message that it keeps for late subscriptions: keep it running, with "
+        "rclpy.spin(node)"
+    )
     assert [told for told in caplog.messages if "keeps" in told] == ([] if is_heard else [text])
+
+
+def test_a_static_transform(node: Node, caplog: Caplog) -> None:
+    """Its broadcaster has the publisher, which keeps it for late subscriptions."""
+    transform = TransformStamped(child_frame_id="laser")
+    transform.header.frame_id = "base"
+    StaticTransformBroadcaster(node).sendTransform(transform)
+    node.destroy_node()
+    assert [text for text in caplog.messages if text.startswith("/tf_static: /node ends, and with it the message")]
 
 
 def test_what_was_heard_or_had_the_time(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
