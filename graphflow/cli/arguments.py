@@ -53,6 +53,7 @@ def as_argument(option: str, words: list[str]) -> str | None:
     for place, word in enumerate(words):
         before, equals, after = word.partition("=")
         if before == option:
-            following = words[place + 1] if words[place + 1 :] and not words[place + 1].startswith("-") else "VALUE"
+            following = words[place + 1] if words[place + 1 :] else "-"
+            following = "VALUE" if following.startswith("-") or following.endswith((".yaml", ".yml")) else following
             return following if ":=" in following else f"{name}:={after if equals else following}"
     return f"{name}:=VALUE"

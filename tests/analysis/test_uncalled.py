@@ -68,6 +68,8 @@ ALWAYS = "{0} without parentheses is always true; write: {0}()"
         ("if a and not (b or self.adder.wait_for_service): pass", "self.adder.wait_for_service"),
         ("x = 1 if rclpy.ok else 2", "rclpy.ok"),
         ("while not self.future.done: pass", "self.future.done"),
+        ("if self.may_go.is_set: pass", "self.may_go.is_set"),
+        ("if not self.out.get_subscription_count: pass", "self.out.get_subscription_count"),
         ("while not self.adder.service_is_ready(): pass", ""),
         ("if goal.done: pass", ""),
         ("if self.is_canceled: self.is_canceled = False", ""),
@@ -96,6 +98,15 @@ def test_functions_of_rclpy_without_parentheses(line: str, call: str) -> None:
     """They come with the argument that they need."""
     told = f"{line} without parentheses calls nothing; write: {call}"
     assert [text for _, text in uncalled_methods(ast.parse(f"def main():\n    {line}\n"))] == ([told] if call else [])
+
+
+@pytest.mark.parametrize("is_called", [True, False])
+def test_a_count_that_is_not_asked(is_called: bool) -> None:
+    """Is told where it is compared."""
+    count = f"self.out.get_subscription_count{'()' if is_called else ''}"
+    told = f"{count} without parentheses is a method, and equals no number; write: {count}()"
+    source = f"def tick(self):\n    x = 1 if {count} == 0 else 2\n"
+    assert list(uncalled_methods(ast.parse(source))) == ([] if is_called else [(2, told)])
 
 
 EVENTS = """

@@ -14,6 +14,7 @@ from tests.conftest import Machine
         ("--rate", ["g.yaml", "--rate", "2.0"], "rate:=2.0"),
         ("--rate", ["g.yaml", "--rate=2.0"], "rate:=2.0"),
         ("--max-rate", ["--max-rate", "--no-console"], "max_rate:=VALUE"),
+        ("--no-tui", ["--no-tui", "g.yaml"], "no_tui:=VALUE"),
         ("-r", ["g.yaml", "-r2"], "r:=VALUE"),
         ("-p", ["g.yaml", "-p", "rate:=2.0"], "rate:=2.0"),
         ("--2", ["--2"], None),

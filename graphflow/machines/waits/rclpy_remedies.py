@@ -129,7 +129,7 @@ def _after_init(wait: SetBy, graph: WaitGraph) -> list[str]:
     """Return the clauses for continuing in a callback what a constructor waits to do, since it runs before any spin."""
     others = " or ".join(_handlers(wait.queues, graph))
     is_value = re.fullmatch(r"self\.\w+", wait.what) is not None
-    timer = f"or in a timer, which begins with: if {wait.what} is None: return" if is_value else "or in a timer"
+    timer = f"or in a timer, which returns at once until {wait.what} is set" if is_value else "or in a timer"
     return [f"go on in {others},", timer] if others else []
 
 

@@ -14,7 +14,7 @@ from graphflow.runtime.part import Host
 from graphflow.transport.inbox import BYTES_BOUND
 from graphflow.wire.liveliness import Kind
 
-MANY_LOSSES = 100
+MANY_LOSSES = 50
 """Messages dropped from a full queue before a warning that most are lost."""
 MANY_GAPS = 10
 """Messages read right after a loss before a loop counts as slow."""

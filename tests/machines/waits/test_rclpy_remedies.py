@@ -231,8 +231,8 @@ def test_a_constructor_that_waits_for_a_message() -> None:
     pose = QueueView("q", "subscription on_pose", "/arm", ("s",))
     told_of = told(Edge("a", SetBy("self.pose", ("q",)), "q", "s"), maker, queues=(pose,))
     assert told_of == [
-        "do not wait for self.pose in __init__, in arm.py:12: go on in on_pose, or in a timer, which begins with: "
-        "if self.pose is None: return"
+        "do not wait for self.pose in __init__, in arm.py:12: go on in on_pose, or in a timer, which returns at once "
+        "until self.pose is set"
     ]
     elsewhere = replace(maker, function="main")
     assert "threading.Thread" in told(Edge("a", SetBy("self.pose", ("q",)), "q", "s"), elsewhere, queues=(pose,))[0]
