@@ -11,6 +11,7 @@ import yaml
 from graphflow.errors import GraphflowError
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep
 from graphflow.graph.resolve import load
+from graphflow.names import did_you_mean
 from graphflow.runtime.context import Context
 from graphflow.runtime.node import Node
 from graphflow.supervisor.launching.classes import add_root
@@ -39,6 +40,14 @@ def _as_yaml(value: object) -> str:
     return text.removesuffix("\n...\n").rstrip("\n")
 
 
+class NodesByName(dict[str, Node]):
+    """Nodes by full name."""
+
+    def __missing__(self, name: str) -> Node:
+        """Raise KeyError with the names that there are."""
+        raise KeyError(f"no node {name!r} has been started{did_you_mean(name, self)}")
+
+
 class PlanRun:
     """A plan under way: each node and step begins when those that it comes after are ready, done or at their end.
 
@@ -56,7 +65,7 @@ class PlanRun:
         failed: Callable[[BaseException], None],
     ) -> None:
         self._plan, self._start, self._failed = plan, start, failed
-        self.nodes: dict[str, Node] = {}
+        self.nodes = NodesByName()
         """The nodes that have been made, by full name."""
         self._met: dict[tuple[str, str], asyncio.Event] = {}
         self._steps = StepRunner(context(), {}) if plan.steps else None

@@ -20,6 +20,8 @@ GRAPHS = PROJECT / "graphs"
 async def test_nodes_parameters_and_arguments(graph: Graph) -> None:
     """Each node has its name, its parameters and its remaps."""
     nodes = await graph.up(GRAPHS / "talker_listener.yaml", rate=4.0)
+    with pytest.raises(KeyError, match="no node 'talker' has been started; did you mean '/talker'"):
+        nodes["talker"]
     heard = graph.tap(String, "/chatter")
     await graph.clock.advance(1.0)
     assert sorted(nodes) == ["/listener", "/talker"]

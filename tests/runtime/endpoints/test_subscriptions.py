@@ -25,6 +25,7 @@ from graphflow.qos import INFINITE_NS, Durability, History
 from graphflow.runtime.endpoints import subscriptions
 from graphflow.runtime.endpoints.sources import Source
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
+from graphflow.runtime.mistakes.losses import MANY_LOSSES
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
 from graphflow.transport import inbox as inbox_module
@@ -289,7 +290,8 @@ async def test_a_subscription_that_nobody_reads_is_told(graph: Graph, caplog: py
     await graph.start(node)
     await flood(graph, subscription, "/x", lambda _: False)
     [told] = caplog.messages
-    assert told.startswith("nothing has read /x yet, and its messages are lost, 100 so far: write `async for")
+    text = f"nothing has read /x yet, and its messages are lost, {MANY_LOSSES} so far: write `async for"
+    assert told.startswith(text)
 
 
 async def test_a_loop_that_is_too_slow_is_told(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
