@@ -11,6 +11,7 @@ from typing import Annotated, Any, get_args
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     StrictBool,
@@ -106,6 +107,8 @@ _EQUIVALENTS = {
     "restart: yes": "always",
     "restart: true": "always",
     "restart: unless-stopped": "always",
+    "lifecycle: true": "active",
+    "lifecycle: yes": "active",
     "log_level: warning": "warn",
     "log_level: critical": "fatal",
     "type: string": "str",
@@ -116,12 +119,14 @@ _EQUIVALENTS = {
 """Values of other tools, with those of graph files."""
 
 
-def _one_of(key: str, words: Sequence[str]) -> Callable[[str], str]:
-    def checked(value: str) -> str:
+def _one_of(key: str, words: Sequence[str]) -> Callable[[object], object]:
+    def checked(value: object) -> object:
         if value not in words:
-            meant = _EQUIVALENTS.get(f"{key}: {value}") or nearest(value.lower().replace("-", "_"), words, cutoff=0.8)
+            word = value if isinstance(value, str) else str(value).lower()  # as YAML writes true and false
+            meant = _EQUIVALENTS.get(f"{key}: {word}") or nearest(word.lower().replace("-", "_"), words, cutoff=0.8)
             way = f"; write {key}: {meant}" if meant in words else ""
-            raise ValueError(f"{key}: expected one of {', '.join(words)}, got {value!r}{way}")
+            got = repr(value) if isinstance(value, str) else word
+            raise ValueError(f"{key}: expected one of {', '.join(words)}, got {got}{way}")
         return value
 
     return checked
@@ -205,7 +210,7 @@ class Arg(_Model):
     default: object = None
     doc: StrictStr = ""
     unit: StrictStr = ""
-    type: Annotated[StrictStr, AfterValidator(_one_of("type", tuple(ARG_TYPES))), _enum(ARG_TYPES)] | None = None
+    type: Annotated[str, BeforeValidator(_one_of("type", tuple(ARG_TYPES))), _enum(ARG_TYPES)] | None = None
     choices: list[Scalar] = []
 
 
@@ -216,7 +221,7 @@ class GroupSpec(_Model):
     limit: Annotated[Any, AfterValidator(_limit)] = None
     thread: StrictBool | None = None
     when_full: (
-        Annotated[StrictStr, AfterValidator(_one_of("when_full", get_args(WhenFull))), _enum(get_args(WhenFull))] | None
+        Annotated[str, BeforeValidator(_one_of("when_full", get_args(WhenFull))), _enum(get_args(WhenFull))] | None
     ) = None
 
     @model_validator(mode="before")
@@ -228,7 +233,7 @@ class GroupSpec(_Model):
 class RestartSpec(_Model):
     """The restart policy of a node; one word for short."""
 
-    policy: Annotated[StrictStr, AfterValidator(_one_of("restart", POLICIES)), _enum(POLICIES)] = "on_failure"
+    policy: Annotated[str, BeforeValidator(_one_of("restart", POLICIES)), _enum(POLICIES)] = "on_failure"
     delay: StrictFloat | StrictInt = Field(BACKOFF.delay, gt=0)
     max_delay: StrictFloat | StrictInt = Field(BACKOFF.max_delay, gt=0)
     max_restarts: StrictInt = Field(BACKOFF.max_restarts, ge=1)
@@ -251,10 +256,10 @@ class _Settings(_Model):
     remap: dict[str, StrictStr] = {}
     env: dict[str, EnvValue] = {}
     restart: RestartSpec | None = None
-    on_exit: Annotated[StrictStr, AfterValidator(_one_of("on_exit", ON_EXIT)), _enum(ON_EXIT)] | None = None
+    on_exit: Annotated[str, BeforeValidator(_one_of("on_exit", ON_EXIT)), _enum(ON_EXIT)] | None = None
     critical: StrictBool | None = None
-    log_level: Annotated[StrictStr, AfterValidator(_one_of("log_level", LOG_LEVELS)), _enum(LOG_LEVELS)] | None = None
-    lifecycle: Annotated[StrictStr, AfterValidator(_one_of("lifecycle", LIFECYCLE)), _enum(LIFECYCLE)] | None = None
+    log_level: Annotated[str, BeforeValidator(_one_of("log_level", LOG_LEVELS)), _enum(LOG_LEVELS)] | None = None
+    lifecycle: Annotated[str, BeforeValidator(_one_of("lifecycle", LIFECYCLE)), _enum(LIFECYCLE)] | None = None
     if_: Condition = Field(None, alias="if")
     unless: Condition = None
 
@@ -416,10 +421,10 @@ class GraphFile(_Model):
     include: IncludeBlock | list[IncludeBlock] = []
     override: dict[str, object] = {}
     deadlock: Annotated[
-        StrictStr, AfterValidator(_one_of("deadlock", get_args(DeadlockPolicy))), _enum(get_args(DeadlockPolicy))
+        StrictStr, BeforeValidator(_one_of("deadlock", get_args(DeadlockPolicy))), _enum(get_args(DeadlockPolicy))
     ] = "raise"
     call_timeout: Annotated[Any, AfterValidator(_call_timeout)] = None
-    strategy: Annotated[StrictStr, AfterValidator(_one_of("strategy", STRATEGIES)), _enum(STRATEGIES)] = "one_for_one"
+    strategy: Annotated[str, BeforeValidator(_one_of("strategy", STRATEGIES)), _enum(STRATEGIES)] = "one_for_one"
     console: object = None
     """Read by `console.section`."""
 

@@ -395,6 +395,11 @@ HEAD = "nodes: {a: {class: x:Y}}\n"
             "group: {nodes: {b: {class: x:Y, after: {a: later}}}}",
             "2:40: after: expected a name, a list of n",
         ),
+        (
+            "group: {lifecycle: true}",
+            "2:20: lifecycle: expected one of unconfigured, inactive, active, got true; write lifecycle: active",
+        ),
+        ("group: {on_exit: 3}", "2:18: on_exit: expected one of ignore, restart, shutdown, got 3"),
         ("strategy: all", "2:11: strategy: expected one of one_for_one, rest_for_one, one_for_all, got 'all'"),
     ],
 )

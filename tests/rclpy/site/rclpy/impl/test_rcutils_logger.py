@@ -98,5 +98,7 @@ def test_what_a_call_says_of_itself_does_not_change() -> None:
             logger.info("line", name=name)
     with pytest.raises(TypeError, match="required parameter"):
         logger.info("line", throttle_time_source_type=ROSClock())
+    with pytest.raises(TypeError, match="throttle_duration_sec: expected a number of seconds, got '1'"):
+        logger.info("line", throttle_duration_sec="1")
     with pytest.raises(TypeError, match="not one of the recognized"):
         logger.info("line", loudly=True)
