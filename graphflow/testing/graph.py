@@ -76,10 +76,12 @@ class Tap(AttributeHints, Generic[M]):
 
 
 _INSTEAD = {
-    **dict.fromkeys(("advance", "sleep", "spin", "spin_once", "step"), "write await graph.clock.advance(1.0)"),
-    **dict.fromkeys(("add", "add_node", "run"), "write await graph.start(node)"),
+    **dict.fromkeys(("advance", "sleep", "spin", "spin_once", "step", "wait"), "write await graph.clock.advance(1.0)"),
+    **dict.fromkeys(("add", "add_node", "run", "launch"), "write await graph.start(node)"),
     **dict.fromkeys(("publish", "create_publisher"), "write graph.publisher(Type, topic).publish(message)"),
-    **dict.fromkeys(("subscribe", "listen", "echo", "create_subscription"), "write graph.tap(Type, topic)"),
+    **dict.fromkeys(
+        ("subscribe", "subscription", "listen", "echo", "create_subscription"), "write graph.tap(Type, topic)"
+    ),
     **dict.fromkeys(("send_goal", "create_action_client"), "write graph.action_client(Type, name)"),
     "create_client": "write await graph.call(Type, name, request)",
 }
@@ -88,9 +90,6 @@ _INSTEAD = {
 
 class Graph(AttributeHints):
     """The nodes, clock and network of one test. Made by the fixture `graph`."""
-
-    def _hint(self, name: str) -> str:
-        return _WAYS.get(name, "")
 
     def __init__(self) -> None:
         self.clock = ManualClock()
@@ -299,14 +298,6 @@ def _run_now(coroutine: Coroutine[object, object, object]) -> None:
     raise AssertionError("starting a bare node waited")
 
 
-_ADVANCE = "to let time pass, write await graph.clock.advance(1.0)"
-_WAYS = {
-    **dict.fromkeys(("advance", "sleep", "spin", "spin_once", "run", "wait"), _ADVANCE),
-    "publish": "write graph.publisher(Type, topic).publish(message)",
-    **dict.fromkeys(("subscribe", "subscription", "listen"), "write heard = graph.tap(Type, topic)"),
-    **dict.fromkeys(("add", "add_node", "launch"), "write await graph.start(node)"),
-}
-"""The correct form for attributes that the fixture does not have."""
 _OF_PROGRAMS = (SystemExit, KeyboardInterrupt, GeneratorExit, asyncio.CancelledError)
 """BaseExceptions that do not come from a failed assertion."""
 TRANSIENT_LOCAL = Qos(depth=1000, durability=Durability.TRANSIENT_LOCAL)

@@ -186,10 +186,11 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                         _fail_if_forgotten()
                         _warn_of_misspelt_taps(item, graph)
                 except (Exception, pytest.fail.Exception) as error:  # any failure of the test, reported and raised
-                    if graph is not None and graph.loop is loop and not _is_of_a_line(error):
-                        await _report_unmet(item, graph)
-                    else:
-                        _report(_forgotten(), item)
+                    found = _forgotten()
+                    if graph is not None and not _is_of_a_line(error):
+                        found += _unstarted(graph, error)
+                        found += await _unmet(graph) if graph.loop is loop else []
+                    _report(found, item)
                     raise
                 finally:
                     if watching is not None:
@@ -237,8 +238,14 @@ def _is_of_a_line(error: BaseException) -> bool:
     return isinstance(error, (DeclarationError, EncodeError, InvalidName, ParameterError, NameError, ImportError))
 
 
-async def _report_unmet(item: pytest.Function, graph: Graph) -> None:
-    """Add the unmet waits to the report of a failing test."""
+def _unstarted(graph: Graph, error: BaseException) -> list[str]:
+    from graphflow.testing.unmet import unstarted
+
+    return [*unstarted(graph, error)]
+
+
+async def _unmet(graph: Graph) -> list[str]:
+    """Return a sentence for each unmet wait of a failing test."""
     from graphflow.analysis.user_code import place_in
     from graphflow.runtime.mistakes.errors.kept_errors import KeptErrors
     from graphflow.testing.unmet import arrivals, unmet
@@ -252,7 +259,7 @@ async def _report_unmet(item: pytest.Function, graph: Graph) -> None:
         found += await unmet(graph, before)
     except RuntimeError as error:  # the graph does not settle
         found.append(str(error))
-    _report(found, item)
+    return found
 
 
 def _warn_of_misspelt_taps(item: pytest.Function, graph: Graph) -> None:

@@ -9,14 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 from graphflow.analysis.frames import awaited, code_of
 from graphflow.analysis.syntax import nodes_in
+from graphflow.analysis.user_code import parts_of
 from graphflow.deadlock.startup_waits import place_of
 from graphflow.errors import Place
 from graphflow.executor import clock as executor_clock
+from graphflow.machines.lifecycle import LifecycleState
 from graphflow.machines.near_topics import is_misspelt
 from graphflow.names import did_you_mean, is_hidden
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.endpoints.timer import Timer
+from graphflow.runtime.managed.lifecycle_node import LifecycleNode
 from graphflow.runtime.mistakes.source.shadowing import definition_of
+from graphflow.runtime.node import Node
 from graphflow.runtime.node_core import NodeCore, core_of
 from graphflow.wire.liveliness import Kind
 
@@ -66,6 +70,8 @@ async def unmet(graph: Graph, before: Mapping[tuple[str, str], int] | None = Non
     found += at_taps
     found += _late(graph)
     found += _strangers(graph, cores)
+    found += _inactive(graph)
+    found += _dropped(graph)
     if has_stood_still:
         found.append("the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)")
     found += at_nodes if not found else []
@@ -151,6 +157,36 @@ def _late(graph: Graph) -> Iterator[str]:
             )
     for publisher, count, name in graph.unheard:
         yield f"the test published {_messages(count)} on {publisher.name} before {name} listened: start the node first"
+
+
+def _inactive(graph: Graph) -> Iterator[str]:
+    """Find lifecycle nodes that do not work yet."""
+    steps = {LifecycleState.UNCONFIGURED: ("configure", "activate"), LifecycleState.INACTIVE: ("activate",)}
+    for node in graph.nodes:
+        if isinstance(node, LifecycleNode) and node.is_running and node.lifecycle_state in steps:
+            ways = " and ".join(f"await node.trigger_{step}()" for step in steps[node.lifecycle_state])
+            yield f"{node.full_name} is {node.lifecycle_state.name.lower()}, and its handlers do not run: {ways}"
+
+
+def _dropped(graph: Graph) -> Iterator[str]:
+    """Find subscriptions whose queues were too short for what the test sent at once."""
+    for node in graph.nodes:
+        for endpoint in node.endpoints if node.is_running else ():
+            if isinstance(endpoint, TopicSubscription) and endpoint.dropped and node is not graph.tester:
+                lost, depth = _messages(endpoint.dropped), endpoint.qos.depth
+                text = f"{node.full_name} lost {lost} of {endpoint.name}: its queue holds {depth}"
+                yield f"{text}; await graph.settle() after each message, or a longer depth"
+
+
+def unstarted(graph: Graph, error: BaseException) -> Iterator[str]:
+    """Find nodes among the variables of a failing test that were made and not started."""
+    seen = set[int]()
+    for part in parts_of(error.__traceback__):
+        for name, thing in part.tb_frame.f_locals.items():
+            if isinstance(thing, Node) and name != "self" and id(thing) not in seen:
+                seen.add(id(thing))
+                if thing not in graph.nodes and not core_of(thing).has_started:
+                    yield f"{name} is not started: await graph.start({name})"
 
 
 def _messages(count: int) -> str:

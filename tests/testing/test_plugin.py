@@ -179,6 +179,23 @@ def test_tests_that_would_pass_in_vain(pytester: pytest.Pytester) -> None:
     assert reports.count("has no effect until it is awaited") == 4
 
 
+def test_a_node_that_is_not_started(pytester: pytest.Pytester) -> None:
+    """It may be why a test fails, although nothing else runs either."""
+    result = run(
+        pytester,
+        """
+        from counter import Counter
+
+        async def test_counts(graph):
+            node = Counter()
+            assert node.count == 1
+        """,
+    )
+
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*Captured graphflow call*", "node is not started: await graph.start(node)"])
+
+
 def test_a_task_that_has_failed(pytester: pytest.Pytester) -> None:
     """It may be why a test fails, and is shown with it."""
     result = run(

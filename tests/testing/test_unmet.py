@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
-from graphflow import ActionClient, Client, Node, Publisher, service, subscription, task, timer
+from graphflow import ActionClient, Client, LifecycleNode, Node, Publisher, service, subscription, task, timer
 from graphflow.msgs.example_interfaces.action import Fibonacci
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.testing import Graph
 from graphflow.testing.graph import TRANSIENT_LOCAL
-from graphflow.testing.unmet import arrivals, misspelt_taps, unmet, unserved
+from graphflow.testing.unmet import arrivals, misspelt_taps, unmet, unserved, unstarted
 
 
 class Talker(Node):
@@ -79,6 +79,46 @@ async def test_a_clock_that_stands_still(graph: Graph) -> None:
     ]
     await graph.clock.advance(0.1)
     assert await unmet(graph) == []
+
+
+async def test_a_lifecycle_node_that_nothing_activates(graph: Graph) -> None:
+    """It is named with the transitions that are left."""
+
+    class Camera(LifecycleNode):
+        image = Publisher(String, "image")
+
+    camera = Camera()
+    await graph.start(camera)
+    ways = "await node.trigger_configure() and await node.trigger_activate()"
+    assert await unmet(graph) == [f"/camera is unconfigured, and its handlers do not run: {ways}"]
+    await camera.trigger_configure()
+    way = "await node.trigger_activate()"
+    assert await unmet(graph) == [f"/camera is inactive, and its handlers do not run: {way}"]
+    await camera.trigger_activate()
+    assert await unmet(graph) == []
+
+
+async def test_more_messages_than_a_queue_holds(graph: Graph) -> None:
+    """The node is named with the topic; what a tap has not taken is not."""
+    await graph.start(Echo())
+    words = graph.publisher(String, "/words")
+    graph.tap(String, "/words", 1)
+    for _ in range(12):
+        words.publish(String())
+    await graph.settle()
+    way = "await graph.settle() after each message, or a longer depth"
+    assert await unmet(graph) == [f"/echo lost 2 messages of /words: its queue holds 10; {way}"]
+
+
+async def test_nodes_that_are_made_and_not_started(graph: Graph) -> None:
+    """They are named by their variables in the failing test; those that have run are not."""
+    started, idle = Echo(), Talker()
+    await graph.start(started)
+    await graph.stop(started)
+    with pytest.raises(AssertionError) as caught:
+        assert not started
+    assert [*unstarted(graph, caught.value)] == ["idle is not started: await graph.start(idle)"]
+    await graph.start(idle)
 
 
 async def test_waits_in_vain(graph: Graph) -> None:

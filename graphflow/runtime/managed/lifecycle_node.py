@@ -40,6 +40,11 @@ class LifecycleNode(Node):
         for name in HOOKS:
             _check_hook(cls, name)
 
+    def _hint(self, name: str) -> str:
+        if name in ("configure", "activate", "deactivate", "cleanup"):
+            return f"write await node.trigger_{name}()"
+        return super()._hint(name)
+
     @property
     def lifecycle_state(self) -> LifecycleState:
         """The node's lifecycle state."""

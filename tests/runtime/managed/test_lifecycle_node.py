@@ -32,6 +32,7 @@ from graphflow.msgs.lifecycle_msgs.msg import Transition, TransitionEvent
 from graphflow.msgs.lifecycle_msgs.srv import ChangeState, GetAvailableStates, GetAvailableTransitions, GetState
 from graphflow.msgs.std_msgs.msg import String
 from graphflow.msgs.std_srvs.srv import Trigger
+from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 from graphflow.testing import Graph
 from graphflow.testing.clock import settle
 
@@ -614,3 +615,11 @@ async def test_remaps_of_nothing_are_told_once_the_node_is_configured(
     told = [r.getMessage() for r in caplog.records if "matches no name" in r.getMessage()]
     assert len(told) == 1
     assert told[0].startswith("the remap mad:=other matches no name of this node")
+
+
+@pytest.mark.parametrize("step", ["configure", "activate", "deactivate", "cleanup"])
+def test_a_transition_by_its_name_alone(step: str) -> None:
+    """The error shows the method that makes it."""
+    with pytest.raises(AttributeError) as caught:
+        getattr(LifecycleNode("camera"), step)
+    assert better_text(caught.value).endswith(f"has no attribute '{step}'; write await node.trigger_{step}()")
