@@ -32,7 +32,7 @@ from graphflow.rclpy.hints.names import missing_name, misspelt_init, module_as_c
 from graphflow.rclpy.hints.pending import early_result
 from graphflow.rclpy.hints.tables import ATTRIBUTES, TEXTS
 from graphflow.rclpy.messages.classes import StrictMessage
-from graphflow.runtime.mistakes.errors.empty_slices import empty_slice
+from graphflow.runtime.mistakes.errors.indices import advise_on_index
 from graphflow.runtime.mistakes.errors.no_terminal import advise_on_input
 
 
@@ -115,8 +115,8 @@ def _hidden(error: BaseException, _: list[FrameType]) -> str:
     return hidden(error)
 
 
-def _empty_slice(error: BaseException, frames: list[FrameType]) -> str:
-    return empty_slice(error, line_of(frames))
+def _index(error: BaseException, frames: list[FrameType]) -> str:
+    return advise_on_index(error, line_of(frames))
 
 
 def _without_terminal(error: BaseException, _: list[FrameType]) -> str:
@@ -163,7 +163,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _stamp,
     _text,
     message_as_value,
-    _empty_slice,
+    _index,
     _without_terminal,
     _no_argument,
 )

@@ -44,6 +44,7 @@ ONE = "dimensions, and the field one: write "
         ("t.linear = Vector3", "that is a class, not a message: write t.linear = Vector3()"),
         ("t.linear = h", "t.linear is a Vector3, and was given a Header"),
         ("t.linear.x = 2", "t.linear.x is a float: write 2.0"),
+        ("Vector3(x=2)", "write x=2.0, or x=float(...)"),
         ("t.linear.x = n", "write t.linear.x = float(n)"),
         ("t.linear.x = '2'", "write t.linear.x = float('2')"),
         ("t.linear.x = 'fast'", "t.linear.x is a float, and 'fast' is no number"),

@@ -260,9 +260,9 @@ def _of_kind(error: BaseException, line: str) -> str:
     if is_used and not _is_in_coroutine(error):
         return "that is a coroutine: in a thread write call_sync(...) for call(...); else write async def, and await"
     from graphflow.runtime.mistakes.errors.class_errors import class_in_place  # most programs never need them
-    from graphflow.runtime.mistakes.errors.empty_slices import empty_slice
+    from graphflow.runtime.mistakes.errors.indices import advise_on_index
 
-    return class_in_place(error) or empty_slice(error, line)
+    return class_in_place(error) or advise_on_index(error, line)
 
 
 def _is_in_coroutine(error: BaseException) -> bool:

@@ -1,0 +1,39 @@
+"""Indices of lists: `ranges[len(ranges) / 2]`, which is no whole number, and slices across the end of a list.
+
+Such a slice, as `scan.ranges[-20:20]`, is empty, where both ends of a scan were meant.
+"""
+
+from __future__ import annotations
+
+import re
+
+_EMPTY = re.compile(
+    "^(min|max)\\(\\) (arg is an empty sequence|iterable argument is empty)|^zero-size array to reduction operation"
+)
+_ACROSS = re.compile(r"(?P<list>\b[A-Za-z_][\w.]*)\[-(?P<last>\d+) *: *(?P<first>\d+)\]")
+_FRACTION = re.compile(r" indices must be integers(?: or slices, not float|, not 'float'|$)")
+_DIVIDED = re.compile(r"\[[^\[\]]*[^\[\]/](?P<slash>/)[^\[\]/][^\[\]]*\]")
+
+
+def advise_on_index(error: BaseException, line: str) -> str:
+    """Return how to write an index or a slice that has raised an error; "" for other errors.
+
+    Args:
+        line: The user's line that raised the error.
+    """
+    return _fraction(error, line) or _empty_slice(error, line)
+
+
+def _fraction(error: BaseException, line: str) -> str:
+    if not isinstance(error, TypeError) or not _FRACTION.search(str(error)):
+        return ""
+    way = "write // in place of /" if _DIVIDED.search(line) else "convert it with int(...)"
+    return f"an index is a whole number: {way}"
+
+
+def _empty_slice(error: BaseException, line: str) -> str:
+    found = _ACROSS.search(line) if isinstance(error, ValueError) and _EMPTY.search(str(error)) else None
+    if found is None:
+        return ""
+    name, last, first = found["list"], found["last"], found["first"]
+    return f"{found[0]} is empty, since slices do not wrap: write [*{name}[-{last}:], *{name}[:{first}]]"

@@ -1,0 +1,47 @@
+"""Indices that are no whole numbers, and slices that wrap around the end of a list."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from graphflow.runtime.mistakes.errors.indices import advise_on_index
+
+NOTE = "scan.ranges[-20:20] is empty, since slices do not wrap: write [*scan.ranges[-20:], *scan.ranges[:20]]"
+
+
+def raised(fn: Callable[[], object]) -> Exception:
+    with pytest.raises((ValueError, TypeError), match=r".") as caught:
+        fn()
+    return caught.value
+
+
+@pytest.mark.parametrize("fn", [lambda: min([]), lambda: max([]), lambda: np.zeros(0).min(), lambda: np.max([])])
+def test_a_slice_across_the_end(fn: Callable[[], object]) -> None:
+    """Python's and NumPy's errors have the way to write it."""
+    assert advise_on_index(raised(fn), "front = min(scan.ranges[-20:20])") == NOTE
+
+
+@pytest.mark.parametrize(
+    "line", ["front = min(scan.ranges[20:-20])", "min(self.found)", "min(scan.ranges[-20:])", "min(ranges[a:b])"]
+)
+def test_other_lists_that_are_empty(line: str) -> None:
+    """There is no advice on them, nor on other errors."""
+    assert advise_on_index(raised(lambda: min([])), line) == ""
+    assert advise_on_index(raised(lambda: int("x")), "int(x[-20:20])") == ""
+
+
+@pytest.mark.parametrize("things", [[1, 2], (1, 2), array("f", [1, 2]), "ab"])
+def test_an_index_with_a_fraction(things: Any) -> None:
+    """A division has a way of its own; a text as an index is another error, but for arrays, whose text is the same."""
+    error = raised(lambda: things[1.0])
+    start = "an index is a whole number: "
+    assert advise_on_index(error, "x = ranges[len(ranges) / 2]") == f"{start}write // in place of /"
+    assert advise_on_index(error, "x = ranges[self.half] / 2") == f"{start}convert it with int(...)"
+    assert advise_on_index(error, "x = ranges[n // 2 * 0.5]") == f"{start}convert it with int(...)"
+    if not isinstance(things, array):
+        assert advise_on_index(raised(lambda: things["a"]), "x = ranges[len(ranges) / 2]") == ""
