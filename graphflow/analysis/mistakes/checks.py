@@ -11,6 +11,7 @@ from graphflow.analysis.mistakes.calls.busy_loops import busy_loops
 from graphflow.analysis.mistakes.calls.called_early import results_passed
 from graphflow.analysis.mistakes.calls.defined_twice import defined_twice
 from graphflow.analysis.mistakes.calls.kept_locks import kept_locks
+from graphflow.analysis.mistakes.calls.silent_excepts import silent_excepts
 from graphflow.analysis.mistakes.calls.single_transforms import single_transforms
 from graphflow.analysis.mistakes.units.contrary_names import contrary_names
 from graphflow.analysis.mistakes.units.literal_units import literal_units
@@ -57,6 +58,7 @@ IN_FILES: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     never_exact,
     contrary_names,
     literal_units,
+    silent_excepts,
     wrong_scale,
 )
 """Checks that also read the imports and names of the whole file."""
