@@ -70,9 +70,9 @@ class ClientGoalHandle(AttributeHints, PendingGoal, Generic[Goal, Result, Feedba
     def _hint(self, name: str) -> str:
         action: Any = self._client.type
         if name in action.Result.__struct_fields__:
-            return f"that is the goal; its result has it: (await goal.result()).{name}"
+            return f"that is the goal; its result has it: (await IT.result()).{name}"
         is_feedback = name in action.Feedback.__struct_fields__
-        return "that is the goal; read its feedback with async for feedback in goal.feedback():" if is_feedback else ""
+        return "that is the goal; read its feedback with async for feedback in IT.feedback():" if is_feedback else ""
 
     @property
     def done(self) -> bool:

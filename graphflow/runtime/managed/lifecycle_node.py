@@ -42,7 +42,7 @@ class LifecycleNode(Node):
 
     def _hint(self, name: str) -> str:
         if name in ("configure", "activate", "deactivate", "cleanup"):
-            return f"write await node.trigger_{name}()"
+            return f"write await IT.trigger_{name}()"
         return super()._hint(name)
 
     @property

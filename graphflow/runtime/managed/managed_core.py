@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Iterable
 from contextlib import AsyncExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar, TypeVarTuple
@@ -134,13 +134,13 @@ class ManagedCore(NodeCore):
     def _hold(self, part: Part) -> Runner | None:
         return None if part.is_inner else part.pause(self._why())
 
-    async def _rest(self) -> None:
-        """End all runs, and start no more."""
+    async def _rest(self, tasks: Iterable[asyncio.Task[object]] = ()) -> None:
+        """End all runs and some tasks, and start no more."""
         if self._rests:
             return
         self._rests = True
         runners = [self._hold(part) for part in self.parts if not isinstance(part, TopicPublisher)]
-        await end_work(self.log, runners, self._levels[-1].tasks if self._levels else ())
+        await end_work(self.log, runners, tasks)
 
     async def _work(self) -> None:
         self._rests = False
@@ -165,15 +165,19 @@ class ManagedCore(NodeCore):
             super().warn_unused_remaps()
 
     async def _begin(self) -> None:
-        self._mute(muted=True)
-        await self._rest()
+        if self.state is LifecycleState.ACTIVE:  # by `on_start`
+            await self._work()
+        else:
+            self._mute(muted=True)
+            await self._rest()
         self.on_state(self.state)
-        if self.target is None:
+        steps = path(self.state, self.target or LifecycleState.ACTIVE)
+        if self.target is None and steps:
             way = "or write lifecycle: active in a graph file"
-            self.log.info("unconfigured: graphflow lifecycle set %s configure, %s", self.full_name, way)
-            return
-        for label in path(self.state, self.target):
-            await self.trigger(label)
+            self.log.info("%s: graphflow lifecycle set %s %s, %s", self.state.label, self.full_name, steps[0], way)
+        elif self.target is not None:
+            for label in steps:
+                await self.trigger(label)
 
     async def trigger(self, wanted: int | str) -> None:
         """Carry out a transition, given by its label or id.
@@ -212,7 +216,7 @@ class ManagedCore(NodeCore):
             raise
         if transition.label == "configure":
             self.warn_unused_remaps()
-        if self.state is LifecycleState.ACTIVE:
+        if self.state is LifecycleState.ACTIVE and self.has_started:
             await self._work()
         return why
 
@@ -220,7 +224,7 @@ class ManagedCore(NodeCore):
         """Run the hook of the current state and move to the resulting level; returns the outcome and its reason."""
         hook = self.state.hook
         if start is LifecycleState.ACTIVE:
-            await self._rest()
+            await self._rest(self._levels[-1].tasks)
         if self.state in (LifecycleState.CONFIGURING, LifecycleState.ACTIVATING):
             self._enter_level()
         if self.state is LifecycleState.ACTIVATING:

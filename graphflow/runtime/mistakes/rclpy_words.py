@@ -407,7 +407,10 @@ class AttributeHints:
     __slots__ = ()
 
     def _hint(self, name: str) -> str:
-        """Return a hint to append to the error about a missing attribute; "" if there is none."""
+        """Return a hint to append to the error about a missing attribute; "" if there is none.
+
+        `IT` in it stands for the object, and becomes the name by which the user's line calls it.
+        """
         return ""
 
     def _instead_of(self, name: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -47,14 +47,14 @@ async def test_a_result_may_be_awaited_for_a_while(graph: Graph) -> None:
 async def test_a_field_of_its_result_or_feedback(graph: Graph) -> None:
     """The hint names the goal's result and feedback."""
     _, asker = await pair(graph)
-    goal: Any = await asker.order(4)
+    sent = goal = cast("Any", await asker.order(4))
     with pytest.raises(AttributeError) as caught:
-        _ = goal.sequence
+        _ = sent.sequence
     explain(caught.value)
-    assert str(caught.value).endswith("; that is the goal; its result has it: (await goal.result()).sequence")
+    assert str(caught.value).endswith("; that is the goal; its result has it: (await sent.result()).sequence")
     fields = [type("Of", (), {"__struct_fields__": names}) for names in (("distance",), ("elapsed",))]
     goal._client = SimpleNamespace(type=SimpleNamespace(Result=fields[0], Feedback=fields[1]))
-    assert goal._hint("elapsed").endswith("async for feedback in goal.feedback():")
+    assert goal._hint("elapsed").endswith("async for feedback in IT.feedback():")
     assert goal._hint("other") == ""
 
 

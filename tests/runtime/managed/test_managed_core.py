@@ -90,3 +90,43 @@ async def test_groups_know_their_members_after_a_rest(graph: Graph) -> None:
     assert node.ticks == 1
     members = [runner for group in core_of(node).groups.by_name.values() for runner in group.members]
     assert len(members) == len(set(map(id, members)))
+
+
+@pytest.mark.parametrize("target", [None, LifecycleState.ACTIVE])
+@pytest.mark.parametrize("is_active", [True, False])
+async def test_a_node_that_brings_itself_up(
+    graph: Graph, target: LifecycleState | None, caplog: pytest.LogCaptureFixture, *, is_active: bool
+) -> None:
+    """It works as one that others bring up: its handlers begin after `on_start`, and its tasks go on."""
+
+    class Ready(Worker):
+        counted = 0
+
+        async def on_start(self) -> None:
+            await self.trigger_configure()
+            if is_active:
+                await self.trigger_activate()
+            assert self.ticks == 0
+
+        async def on_configure(self) -> None:
+            self.spawn(self.count)
+
+        async def count(self) -> None:
+            async for _ in self.clock.every(1.0):
+                self.counted += 1
+
+    caplog.set_level("INFO")
+    node = Ready()
+    managed(node).target = target
+    await graph.start(node)
+    told = [text for text in caplog.messages if "graphflow lifecycle set" in text]
+    assert [text.partition(",")[0] for text in told] == (
+        [] if is_active or target is not None else ["inactive: graphflow lifecycle set /ready activate"]
+    )
+    await graph.clock.advance(1.0)
+    assert (node.ticks, node.counted) == (int(is_active or target is not None), 2)
+    if target is None and not is_active:
+        await node.trigger_activate()
+    await node.trigger_deactivate()
+    await graph.clock.advance(1.0)
+    assert (node.ticks, node.counted) == (int(is_active or target is not None), 3)

@@ -58,8 +58,21 @@ def better_text(error: AttributeError) -> str:
     if text := text_instead(thing, name):
         return text
     running = {part.tb_frame.f_code for part in parts_of(error.__traceback__)}
-    hint = translation(name) or hint_of(thing, name) or _setter(thing, name, running) or _near(thing, name)
+    own = translation(name) or _hint_with_name(thing, name, error)
+    hint = own or _setter(thing, name, running) or _near(thing, name)
     return f"{error}; {hint}" if hint else ""
+
+
+def _hint_with_name(thing: AttributeHints, name: str, error: AttributeError) -> str:
+    """Return an object's hint, with the object as the user's line names it."""
+    hint, parts = hint_of(thing, name), list(parts_of(error.__traceback__))
+    if "IT" not in hint or not parts:
+        return hint
+    frame = parts[-1].tb_frame
+    line = linecache.getline(frame.f_code.co_filename, parts[-1].tb_lineno)
+    owners = (path.rpartition(".") for path in _PATH.findall(line))
+    named = (owner for owner, _, attribute in owners if attribute == name and _named(owner, frame) is thing)
+    return hint.replace("IT", next(named, "it"))
 
 
 def _of_transform(thing: object, name: str, error: AttributeError) -> str:

@@ -51,7 +51,7 @@ ADD = '@service(AddTwoInts, "add")\ndef add(self, request, response):\n    '
         (POSE + "m.pos = 1", "12: PoseStamped has no field 'pos'; did you mean 'pose'?"),
         (POSE + "m.pose.position.x = 'fast'", "12: Point.x: expected float64, got 'fast'"),
         (
-            POSE + "try:\n        if m.pos.x > 1:\n            print(1)\n    except Exception:\n        pass",
+            POSE + "try:\n        if m.pos.x > 1:\n            print(1)\n    except Exception:\n        print(2)",
             "13: PoseStamped has no field 'pos'; did you mean 'pose'?",
         ),
         (ADD + "return AddTwoInts.Response(sum=request.c)", "12: AddTwoInts.Request has no field 'c'"),
