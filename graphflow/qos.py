@@ -67,8 +67,10 @@ class Qos:
         for name, kind in _POLICIES.items():
             if not isinstance(value := getattr(self, name), kind):
                 meant = str(value).upper() if isinstance(value, str) else ""
-                one = kind[meant] if meant in kind.__members__ else next(iter(kind))
-                raise ValueError(f"{name} of a Qos cannot be {value!r}; write {name}={kind.__name__}.{one.name}")
+                fits = next((kind_of for kind_of in (kind, *_POLICIES.values()) if meant in kind_of.__members__), None)
+                one = next(iter(kind)) if fits is None else fits[meant]
+                way = f"{type(one).__name__.lower()}={type(one).__name__}.{one.name}"
+                raise ValueError(f"{name} of a Qos cannot be {value!r}; write {way}")
         for name in ("depth", *_DURATIONS):
             value = getattr(self, name)
             if isinstance(value, IntEnum) and type(value) in _POLICIES.values():

@@ -80,6 +80,7 @@ def test_a_negative_depth_is_refused() -> None:
             {"durability": "transient_local"},
             "durability of a Qos cannot be 'transient_local'; write durability=Durability.TRANSIENT_LOCAL",
         ),
+        ({"reliability": "transient_local"}, "write durability=Durability.TRANSIENT_LOCAL"),
         ({"reliability": True}, "reliability of a Qos cannot be True; write reliability=Reliability.RELIABLE"),
         ({"deadline_ns": 0.1}, "is a whole number, not 0.1; for 0.1 seconds write deadline_ns=100_000_000"),
         ({"lifespan_ns": -5}, "lifespan_ns of a Qos cannot be -5; leave it out for none"),

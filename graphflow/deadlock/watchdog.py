@@ -16,7 +16,7 @@ import threading
 import time
 from asyncio import AbstractEventLoop, BaseEventLoop
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from types import CodeType
 
 from graphflow.analysis.frames import Frame, stack_of
@@ -37,6 +37,8 @@ LOOKS, TOO_MANY = 10, 7
 STACK_SHOWN = 6
 """Lines of the stack in a report, from the user's code inwards."""
 _REMEDY = "Await the slow part, or move it to a thread: thread=True, or await self.offload(...)"
+_OUTSIDE = "Await the slow part, or move it to a thread: await asyncio.to_thread(...)"
+"""The same in code without a node at hand."""
 _HELD = "it was stopped, C code held it, or the machine is overloaded"
 _NOTHING_RUNS = "nothing else in this process can run."
 _LOCKED = re.compile(r"(?:^with\s+|^)(?P<name>\w+(?:\.\w+)*)(?:\.acquire\(|\s*:)")
@@ -199,7 +201,7 @@ class Watchdog:
             level, text = _of_others(seconds, time.process_time() - self._processor_time)
         else:
             blocked = f"the event loop has been blocked for {seconds:.1f} s in {shown[last]}: {_NOTHING_RUNS}"
-            level, text = logging.ERROR, f"{blocked}\n{_of_lock(frames[last]) or _REMEDY}"
+            level, text = logging.ERROR, f"{blocked}\n{_of_lock(frames[last]) or _remedy(frames)}"
         lines = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
         logger.log(level, "%s%s", text, lines)
 
@@ -211,6 +213,10 @@ class Watchdog:
     def close(self) -> None:
         """Stop watching."""
         self._ended.set()
+
+
+def _remedy(frames: Iterable[Frame]) -> str:
+    return _REMEDY if any("self" in frame.f_locals for frame in frames if is_users_frame(frame)) else _OUTSIDE
 
 
 def _of_others(seconds: float, processor_time: float) -> tuple[int, str]:

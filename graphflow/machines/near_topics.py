@@ -51,6 +51,8 @@ def did_you_mean_topic(own: Entity, there: ByType) -> str:
         return ""
     used = {e.name for k in (own.kind, kind) for e in there.get((k, own.type), ()) if _is_of_one_node(e, own)}
     # In order of arrival, so that a flood of new names cannot push out those that were known before.
+    met = {e.name for e in there.get((own.kind, own.type), ())}
+    used -= {name for name in used - met if is_misspelt(own.name, name)}  # the node's own other end is misspelt
     names = dict.fromkeys(e.name for e in others if e.name not in used and not is_hidden(e.node_name))
     near = [name for name in islice(names, COMPARED) if is_near(own.name, name)]
     best = nearest(own.name, sorted(near), cutoff=0.0)

@@ -375,6 +375,11 @@ def truth(value: object, file: str) -> bool:
         return bool(value)
     if isinstance(value, str) and value.strip().lower() in words:
         return words[value.strip().lower()]
+    compared = re.fullmatch(r"(true|false) *== *(true|false)", str(value).strip().lower())
+    if compared is not None:
+        text = "a comparison is not made here"
+        way = "the argument alone is the condition: if: $(var NAME), or unless: $(var NAME)"
+        raise SubstitutionError(f"{text}: {way}")
     meant = _TRUTHS.get(str(value).strip().lower())
     compare = "EqualsSubstitution(..., 'text')" if file.endswith(".py") else "$(eval NAME == 'text')"
     way = f"write {meant!r}" if meant is not None else f"compare with {compare}"

@@ -55,7 +55,10 @@ def _one(type_: FieldType, value: object, fields: Sequence[Field]) -> str | None
         name = type_.base.rpartition("/")[2]
         return f"{{{fields[0].name}: {float(number)}}}, in Python {name}({fields[0].name}={float(number)})"
     if not type_.is_primitive:
-        return _mapping(value, fields)
+        given = list(value) if type(value) is tuple else value
+        text, name = _mapping(given, fields), type_.base.rpartition("/")[2]
+        is_of_python = type(value) is tuple and text is not None
+        return f"{name}({text[1:-1].replace(': ', '=')})" if is_of_python and text is not None else text
     if type(value) is list:
         return _scalar(type_, value[0]) if len(value) == 1 else None
     return _scalar(type_, value)

@@ -29,6 +29,7 @@ from graphflow.runtime.endpoints.shared_memory import Readers
 from graphflow.runtime.mistakes.network.same_names import Twins
 from graphflow.runtime.mistakes.network.unlatched import Unlatched
 from graphflow.runtime.mistakes.network.unmatched import Unmatched
+from graphflow.runtime.mistakes.rclpy_words import AttributeHints
 from graphflow.transport.base import Closable, Session
 from graphflow.transport.event_loop.daemon_threads import THREADS
 from graphflow.transport.event_loop.loop import in_thread
@@ -52,13 +53,18 @@ LINK_GRACE = 3.0
 """Seconds to wait for other machines to answer before continuing without them."""
 
 
-class Context:
+class Context(AttributeHints):
     """One process's participation in a domain. Made by `open` or, over any session, by the constructor.
 
     Args:
         deadlock: The policy for deadlocks that involve this process.
         call_timeout: Default timeout of calls, in seconds; None for no limit.
     """
+
+    def _hint(self, name: str) -> str:
+        return (
+            "running(...) gives the process's context: name the node before, node = Talker(), and enter running(node)"
+        )
 
     def __init__(
         self,

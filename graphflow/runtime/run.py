@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import linecache
 import logging
+import re
 import sys
 from collections.abc import AsyncGenerator, Mapping, Sequence
 from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
-from types import TracebackType
+from types import FrameType, TracebackType
 from typing import Never
 
 from graphflow.analysis.one_by_one import one_by_one
 from graphflow.analysis.user_code import place_in, users_frame
-from graphflow.errors import GraphflowError, TooManyErrors, UsageFault
+from graphflow.errors import DeclarationError, GraphflowError, TooManyErrors, UsageFault
 from graphflow.runtime.args import RosArgs, parse_ros_args
 from graphflow.runtime.call_site import here
 from graphflow.runtime.context import Context
@@ -77,7 +79,8 @@ class _Running(Unentered[Context]):
         idle = [node.name for node in self._nodes if handlers(type(node))]
         if idle and kind is None and not self._has_waited:
             text = "awaits nothing, so that no handler of %s runs; end it with await asyncio.Event().wait()"
-            logger.warning(f"%s: this block {text}, or write graphflow.run(...)", self._place, ", ".join(idle))
+            way = "or write graphflow.run(...) in place of asyncio.run(...)"
+            logger.warning(f"%s: this block {text}, {way}", self._place, ", ".join(idle))
         if error is not None and (advice := remark_on(error)):
             error.add_note(advice)
         return await self._block.__aexit__(kind, error, trace)
@@ -162,7 +165,8 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
         logger.warning("%s: graphflow.run was called without a node; write graphflow.run(Talker)", here())
     ros = _configure(strange, nodes, args)
     made = _make_all(nodes, ros)
-    if text := one_by_one(users_frame(sys._getframe(1))):
+    caller = users_frame(sys._getframe(1))
+    if text := one_by_one(caller) or _within_asyncio_run(caller):
         logger.warning("%s", text)
     try:
         loop.run(_run(made))
@@ -176,6 +180,14 @@ def run(*nodes: Node | type[Node], args: Sequence[str] | None = None, **strange:
         if status is None:
             raise
         raise SystemExit(status) from None
+
+
+def _within_asyncio_run(caller: FrameType | None) -> str:
+    """Return a remark on a line such as `asyncio.run(graphflow.run(Talker))`; "" for others."""
+    line = "" if caller is None else linecache.getline(caller.f_code.co_filename, caller.f_lineno)
+    if not re.search(r"\basyncio\.run\(\s*(graphflow\.)?run\(", line):
+        return ""
+    return f"{here()}: graphflow.run runs its own event loop, until the nodes end: leave out asyncio.run"
 
 
 def _configure(
@@ -203,6 +215,9 @@ def _make_all(nodes: Sequence[Node | type[Node]], ros: RosArgs) -> list[Node]:
         for node in nodes:
             if not isinstance(node, type):
                 core_of(node)
+            elif not issubclass(node, Node):
+                way = f"write class {node.__name__}(Node)"
+                raise DeclarationError(f"{node.__name__} is not a class of nodes, which derive from Node: {way}")
         made = [n if isinstance(n, Node) else make(n, ros) for n in nodes]
         for node in made:
             core_of(node).refuses_unused = len(made) == 1  # with several nodes a rule need not match in each
@@ -245,7 +260,7 @@ def _refuse_running_loop(nodes: Sequence[Node | type[Node]]) -> None:
 
 def _names(nodes: Sequence[Node | type[Node]]) -> str:
     """Return nodes as they are written in a call."""
-    return ", ".join(f"{node.__name__}()" if isinstance(node, type) else node.name for node in nodes)
+    return ", ".join(f"{(node if isinstance(node, type) else type(node)).__name__}()" for node in nodes)
 
 
 def _refuse_unused(ros: RosArgs, nodes: Sequence[Node | type[Node]]) -> None:

@@ -22,6 +22,7 @@ from typing import Any, cast
 
 import pytest
 
+from graphflow.analysis.frames import Frame
 from graphflow.deadlock import watchdog as module
 from graphflow.deadlock.watchdog import Watchdog
 from graphflow.runtime.logs import logger as logger_module
@@ -175,6 +176,20 @@ async def test_a_block_without_code_of_the_users(
     assert float(head.partition(" for ")[2].partition(" s")[0]) >= 0.2
     assert module._REMEDY not in told[0]
     assert " in block" in stack
+
+
+def test_the_remedy_for_code_without_a_node() -> None:
+    """It has no `self`."""
+
+    def frame() -> Frame:
+        return cast("Frame", sys._getframe())
+
+    class Lamp:
+        def frame(self) -> Frame:
+            return cast("Frame", sys._getframe())
+
+    assert module._remedy([frame()]) == module._OUTSIDE
+    assert module._remedy([Lamp().frame(), frame()]) == module._REMEDY
 
 
 async def test_many_short_blocks(

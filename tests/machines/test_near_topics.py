@@ -82,6 +82,14 @@ def test_what_was_meant_by_a_subscription() -> None:
     )
 
 
+def test_a_node_that_misspells_its_own_topic() -> None:
+    """It publishes one and hears the other, and nobody else has either."""
+    own, other = endpoint(Kind.PUBLISHER, "base", "/arived"), endpoint(Kind.SUBSCRIPTION, "base", "/arrived")
+    assert "did you mean '/arrived', to which /base listens?" in did_you_mean_topic(own, by_type([own, other], {TWIST}))
+    fed = endpoint(Kind.PUBLISHER, "arm", "/arrived")
+    assert did_you_mean_topic(own, by_type([own, other, fed], {TWIST})) == ""
+
+
 @pytest.mark.parametrize(
     "other",
     [

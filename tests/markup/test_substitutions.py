@@ -284,6 +284,13 @@ def test_no_place_for_a_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         apply(f"$(substituted {tmp_path / 'p.yaml'})")
 
 
+@pytest.mark.parametrize("value", ["true == true", "False==true"])
+def test_a_comparison_as_a_condition(value: str) -> None:
+    """Nothing compares it: the argument alone is the condition."""
+    with pytest.raises(SubstitutionError, match=r"is not made here: .* if: \$\(var NAME\), or unless: \$\(var NAME\)"):
+        truth(value, "a.yaml")
+
+
 ARGUMENT = "to use the argument of that name write"
 
 

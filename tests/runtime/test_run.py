@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import linecache
 import sys
 from contextlib import AsyncExitStack
 from typing import Any
@@ -30,7 +31,7 @@ from graphflow.msgs.std_msgs.msg import String
 from graphflow.runtime.args import parse_ros_args
 from graphflow.runtime.ending import StopRequest
 from graphflow.runtime.process_nodes import Company
-from graphflow.runtime.run import make, run, running, serve
+from graphflow.runtime.run import _within_asyncio_run, make, run, running, serve
 from graphflow.testing.clock import ManualClock, settle
 from graphflow.transport.memory import Network
 
@@ -411,6 +412,28 @@ def test_run_says_what_is_wrong_with_its_words(
 
     assert caught.value.code == code
     assert text in capsys.readouterr().err
+
+
+class Plain:
+    """A class without a base."""
+
+
+def test_run_refuses_a_class_of_no_nodes(capsys: pytest.CaptureFixture[str]) -> None:
+    """It shows the base class that is missing."""
+    with pytest.raises(SystemExit) as caught:
+        run(Plain, args=[])  # type: ignore[arg-type]
+    assert caught.value.code == 2
+    told = "error: Plain is not a class of nodes, which derive from Node: write class Plain(Node)"
+    assert capsys.readouterr().err.startswith(told)
+
+
+@pytest.mark.parametrize(("line", "is_told"), [("asyncio.run(run(Talker))", True), ("run(Talker)", False)])
+def test_run_within_asyncio_run(monkeypatch: pytest.MonkeyPatch, line: str, is_told: bool) -> None:
+    """There are two loops then, of which the second has nothing to run."""
+    monkeypatch.setattr(linecache, "getline", lambda *_: line)
+    told = _within_asyncio_run(sys._getframe())
+    assert told.endswith("runs its own event loop, until the nodes end: leave out asyncio.run") is is_told
+    assert _within_asyncio_run(None) == ""
 
 
 class Storming(Node):

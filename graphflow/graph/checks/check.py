@@ -131,6 +131,10 @@ def _check_groups(node: PlannedNode, interface: Interface) -> Iterator[Problem]:
             elif handler not in handlers and interface.dynamic_names is not True:
                 near = did_you_mean(handler, handlers)
                 yield Problem(place, f"{_class(interface)} has no handler {handler!r}{near}")
+        is_known = name in interface.groups or interface.dynamic_names is True
+        if not (is_known or group.change.handlers):
+            near = did_you_mean(name, interface.groups)
+            yield Problem(group.place, f"{_class(interface)} has no group {name!r}, and no handlers are listed{near}")
         here = [handlers[h] for h in group.change.handlers if h in handlers]
         if group.change.thread and here and all(h.is_async for h in here):
             names = ", ".join(h.name for h in here)

@@ -140,7 +140,8 @@ def _is_stray(path: source.Path, fault: Fault) -> bool:
 
 def _belongs_to_a_node(subject: str, key: str) -> str:
     several = ", or for several nodes into a group: with its nodes:" if key in keys_of(GroupBlock) else ""
-    return f"{subject} belongs to a node; indent it below the node's name, beside class:{several}"
+    beside = "" if key == "class" else ", beside class:"
+    return f"{subject} belongs to a node; indent it below the node's name{beside}{several}"
 
 
 def _misspelt(
@@ -287,6 +288,8 @@ def _wrong_type(model: type[BaseModel], path: source.Path, wanted: list[str], va
         return f"{where}: expected {text}; write {line}"
     if len(path) == 2 and path[0] == "args" and not isinstance(value, (dict, list)):
         return f"{where}: expected {text}; write {path[1]}: {rewritten.flow({'default': value})}"
+    if len(path) == 4 and path[2] == "concurrency" and isinstance(value, int) and not isinstance(value, bool):
+        return f"{where}: expected {text}; write {path[3]}: {rewritten.flow({'limit': value})}"
     got = _SHOWN[value] if value is None or isinstance(value, bool) else repr(value)
     shown = example(*path) or (example(*path[:-1]) if value is None else "")  # a key without a value, as in {a, b}
     return f"{where}: expected {text}, got {got if len(got) <= 60 else got[:60] + '...'}{shown}"

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import logging
+import sys
 from contextlib import AbstractAsyncContextManager
 from typing import TYPE_CHECKING, NoReturn, TypeVar
 
@@ -32,11 +34,16 @@ class Unentered(AbstractAsyncContextManager[T]):
 
     if not TYPE_CHECKING:  # type checkers must keep reporting unknown attributes
 
-        def _refuse(self) -> NoReturn:
+        def __await__(self) -> NoReturn:
             self._is_known = True
             raise TypeError(f"write {self._way}")
 
-        __await__ = __enter__ = _refuse
+        def __enter__(self) -> NoReturn:
+            self._is_known = True
+            caller = sys._getframe(1).f_code
+            is_async = caller.co_flags & inspect.CO_COROUTINE
+            where = "" if is_async else ", in an async def main(), which asyncio.run(main()) runs"
+            raise TypeError(f"write {self._way}{where}")
 
         def __exit__(self, *_: object) -> None:
             """Do nothing: `__enter__` has raised."""

@@ -57,6 +57,11 @@ def _at_exit() -> None:
     error = getattr(sys, "last_value", None)
     if isinstance(error, AttributeError) and error.name is not None and (better := better_text(error)):
         sys.stderr.write(f"{place_in(error)}: {better}\n")  # Python has printed the error itself
+    if isinstance(error, NameError):
+        from graphflow.runtime.mistakes.errors.python_errors import remark_on  # most programs never need it
+
+        if (way := remark_on(error)) and way not in getattr(error, "__notes__", ()):
+            sys.stderr.write(f"{place_in(error)}: {way}\n")
     if isinstance(error, ModuleNotFoundError) and error.name and _file is not None:
         sys.stderr.write(_as_module(Path(_file).resolve(), error.name))
     if _file is not None and not hasattr(sys, "last_value"):  # the program ended normally, without an error
@@ -75,7 +80,9 @@ def _as_module(file: Path, missing: str) -> str:
     package = file.parent.name
     if missing.partition(".")[0] != package:
         return ""
-    run = f"graphflow run {package}.{file.stem}, in {file.parents[1]}"
+    source = found_text(file, "replace")
+    is_program = re.search(r"__main__|\basyncio\.run\(", source) is not None
+    run = f"{'python -m' if is_program else 'graphflow run'} {package}.{file.stem}, in {file.parents[1]}"
     return f"to run a file of {package}, which imports {missing}: {run}\n"
 
 

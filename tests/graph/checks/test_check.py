@@ -118,6 +118,7 @@ def test_what_fits_is_no_problem(line: str) -> None:
         ("remap: {from: goal, to: /x}", "4:13: a remap is written as a pair: remap: {goal: /x}"),
         ("remap: {/goal: /x}", "4:13: Chaser has no topic or service '/goal'; did you mean 'goal'?"),
         ("concurrency: {m: [contrl]}", "4:23: Chaser has no handler 'contrl'; did you mean 'control'?"),
+        ("concurrency: {m: {limit: 2}}", "4:19: Chaser has no group 'm', and no handlers are listed"),
         ("concurrency: {m: [watch]}", "4:23: watch is a task, which runs alongside everything and is in no group"),
         (
             "concurrency: {m: {handlers: [control], thread: true}}",

@@ -41,7 +41,7 @@ NODE = "nodes:\n  a: {class: x:Y, concurrency: "
     ("text", "said"),
     [
         (f"{NODE}[m]}}", "2:32: concurrency: expected a mapping, got ['m'], for example concurrency: {mot"),
-        (f"{NODE}{{m: 3}}}}", "2:36: concurrency.m: expected a mapping, got 3, for example motion: [con"),
+        (f"{NODE}{{m: 3}}}}", "2:36: concurrency.m: expected a mapping; write m: {limit: 3}"),
         (f"{NODE}{{m: {{handler: [t]}}}}}}", "2:37: unknown key 'handler'; did you mean 'handlers'?"),
         (f"{NODE}{{m: {{handlers: [t], limit: 0}}}}}}", "2:59: limit: expected 1 or more, or none for no limit, got 0"),
         ("nodes:\n  a: {class: x:Y, env: {B: []}}", "2:28: env.B: expected text or a number, got []"),

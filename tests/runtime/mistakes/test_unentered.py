@@ -32,7 +32,7 @@ async def test_a_forgotten_async_with(graph: Graph, caplog: pytest.LogCaptureFix
     line = inspect.getsourcelines(Asker.forget)[1] + 1
     first, second = caplog.messages
     assert first.startswith(f"{__file__}:")
-    assert first.endswith("has no effect until it is entered; write async with graphflow.running(asker): ...")
+    assert first.endswith("has no effect until it is entered; write async with graphflow.running(Asker()): ...")
     assert second.startswith(
         f"{__file__}:{line}: this has no effect until it is entered; write `async with client.send"
     )
@@ -41,10 +41,17 @@ async def test_a_forgotten_async_with(graph: Graph, caplog: pytest.LogCaptureFix
 def test_other_ways_to_enter(caplog: pytest.LogCaptureFixture) -> None:
     """Are answered at once, and only once."""
     block = running(Asker())
-    with pytest.raises(TypeError, match=r"write async with graphflow\.running\(asker\)"):
+    with pytest.raises(TypeError, match=r"running\(Asker\(\)\): \.\.\., in an async def main"):
         block.__enter__()  # type: ignore[attr-defined]
     del block
     assert caplog.messages == []
+
+
+async def test_with_in_place_of_async_with() -> None:
+    """In a coroutine, the form alone is wrong."""
+    block = running(Asker())
+    with pytest.raises(TypeError, match=r"write async with graphflow\.running\(Asker\(\)\): \.\.\.$"):
+        block.__enter__()  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(

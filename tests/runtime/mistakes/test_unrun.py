@@ -59,6 +59,19 @@ def test_a_file_of_a_package(tmp_path: Path, missing: str, is_told: bool) -> Non
     told = f"to run a file of arms, which imports arms: graphflow run arms.lift, in {tmp_path.resolve()}\n"
     assert done.stderr.endswith(told) is is_told
     assert done.stderr.count("graphflow run") == is_told
+    (tmp_path / "arms" / "lift.py").write_text(
+        f"from graphflow import Node\nfrom {missing} import clamp\nasyncio.run(main())\n"
+    )
+    done = subprocess.run(program, cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
+    assert done.stderr.endswith(told.replace("graphflow run", "python -m")) is is_told
+
+
+@slow
+def test_a_name_that_is_not_there(tmp_path: Path) -> None:
+    """What Python says of it is completed."""
+    (tmp_path / "talk.py").write_text("from graphflow import Node\n\nclass N(Node):\n    half = self.rate\n")
+    done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
+    assert done.stderr.endswith("talk.py:4: a class body has no self: write rate\n")
 
 
 @slow

@@ -38,6 +38,7 @@ def literal_units(module: ast.Module) -> tuple[tuple[int, str], ...]:
         if isinstance(node, ast.Call):
             found += _of_period(node, bindings, parents)
             found += _of_angles(node)
+            found += _of_sleep(node)
         found += _of_turns(node)
     return tuple(found)
 
@@ -67,6 +68,14 @@ def _of_period(call: ast.Call, bindings: Bindings, parents: Sequence[ast.AST]) -
             text = f"{shown}a period is in seconds: a command comes every {rate} s"
             text += f"; if {rate} per second are meant, write {way}"
             yield value.lineno, text
+
+
+def _of_sleep(call: ast.Call) -> Iterator[tuple[int, str]]:
+    match call:
+        case ast.Call(func=ast.Attribute(attr="sleep", value=clock), args=[value]) if last_name(clock) == "clock":
+            if (ms := _milliseconds(value)) is not None:
+                text = f"a sleep is in seconds, and this one takes {ms} s; if {ms} ms are meant, write {ms / 1000:g}"
+                yield value.lineno, text
 
 
 def _callback(call: ast.Call, parents: Sequence[ast.AST]) -> ast.AST | None:

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 
 from graphflow.analysis.syntax import nodes_in
 
+_FULL_TURN = 6.3
+"""A full turn in radians: larger numbers are degrees."""
 _PARTS = ("x", "y", "z", "w")
 _OWNERS = ("orientation", "rotation")
 _IS_HEADING = re.compile(r"(current_|robot_|cur_|start_|my_|last_|prev_)*(yaw|theta|heading|angle)")
@@ -42,6 +44,10 @@ def angles_as_quaternions(code: ast.AST) -> Iterator[tuple[int, str]]:
 
 def _text(target: str, part: str, value: ast.expr) -> str:
     angle = ast.unparse(value)
+    is_in_degrees = (
+        isinstance(value, ast.Constant) and isinstance(value.value, (int, float)) and value.value > _FULL_TURN
+    )
+    angle = f"math.radians({angle})" if is_in_degrees else angle
     text = f"{target} is a part of a quaternion, not an angle"
     if part == "w":
         return f"{text}: it is math.cos(angle / 2)"

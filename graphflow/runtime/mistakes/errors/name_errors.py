@@ -37,10 +37,26 @@ def owner_of(error: NameError) -> str:
             parent = _value(base, frame)
             if isinstance(parent, type) and inspect.getattr_static(parent, name, None) is not None:
                 return f"a class body does not see its parent's names: write {ast.unparse(base)}.{name}"
+    if name == "self":
+        return _without_self(frame)
     node = frame.f_locals.get("self")
     if node is not None and not name.startswith("__") and inspect.getattr_static(node, name, None) is not None:
         return f"a method does not see the names of its class: write self.{name}"
-    return _missing_import(name)
+    return _missing_import(name, linecache.getline(frame.f_code.co_filename, frame.f_lineno))
+
+
+def _without_self(frame: FrameType) -> str:
+    """Return the correct form of `self.name` in a class body, or in a function that is no method."""
+    line = linecache.getline(frame.f_code.co_filename, frame.f_lineno)
+    found = re.search(r"\bself\.(\w+)", line)
+    if "__qualname__" in frame.f_locals:
+        return f"a class body has no self: write {found[1]}" if found is not None else ""
+    if not frame.f_code.co_flags & inspect.CO_OPTIMIZED:  # the module's own lines
+        return "only methods have self: move the line into one"
+    function = frame.f_code.co_name
+    if not function.isidentifier():  # a comprehension of a class body
+        return ""
+    return f"{function} is no method: indent it below its class as def {function}(self, ...), or give it the node"
 
 
 def home_of(name: str) -> str:
@@ -49,11 +65,17 @@ def home_of(name: str) -> str:
     return next((home for home in homes if name in import_module(home).__all__), "")
 
 
-def _missing_import(name: str) -> str:
-    """Return the line that imports a name, if it is one of graphflow's, a type's, or a module's; "" if it is none."""
+def _missing_import(name: str, line: str) -> str:
+    """Return the line that imports a name, if it is one of graphflow's, a type's, or a module's; "" if it is none.
+
+    Args:
+        line: The line that uses it.
+    """
     from graphflow.msgs.homes import imports
 
     home = home_of(name)
+    if home and re.search(rf"\b{name}\.\w", line):  # an attribute that a message's class has not
+        return f"write from {home} import {name}"
     lines = [f"from {home} import {name}" if home else "", imports(name, "graphflow.msgs.")]
     if any(lines):
         return f"write {' or '.join(filter(None, lines))}"

@@ -54,6 +54,16 @@ REMARKS = (
         r'can only concatenate str \(not "(int|float|bool)"\)', "", "convert it with str(value), or use an f-string"
     ),
     Remark(
+        r'can only concatenate str \(not "(?P<kind>[A-Z]\w+)"\)',
+        r"\+\s*(?P<name>[a-z]\w*)",
+        "{name} is a {kind}, not a text: take a field of it, as in {name}.data, or use an f-string",
+    ),
+    Remark(
+        r"\bpublish\(\) got an unexpected keyword argument '(?P<name>\w+)'",
+        "",
+        "publish takes a message: publish(Type({name}=...)), of the publisher's type",
+    ),
+    Remark(
         "^Result is not (set|ready)",
         r"(?P<name>\b[\w.]+)\.result\(",
         "{name} is still at work: write await {name}, which returns its result",
@@ -120,7 +130,11 @@ REMARKS = (
         "self.{name} is a value: remove the parentheses",
     ),
     Remark(r"^'Parameters' object has no attribute '(?P<name>\w+)'", "", 'parameters.get("{name}") returns a value'),
-    Remark("^name 'self' is not defined", r"self\.(?P<name>\w+)", "a class body has no self: write {name}"),
+    Remark(
+        r"-: 'float' and 'Time'",
+        r"time\.time\(\)\s*-\s*(?P<name>[\w.]+)",
+        "a time of ROS is compared with the node's clock: write (self.clock.now() - {name}).seconds",
+    ),
     Remark(
         f"-: 'Time' and '{_SECONDS}'",
         r"-\s*(?P<name>self\.\w+)",
@@ -240,6 +254,16 @@ OF_VALUES = (
         r"\b(assignment destination|array) is read-only",
         "",
         "arrays of a message that was received cannot be written to: change a copy, as in message.data.copy()",
+    ),
+    Remark(
+        "^The truth value of an array with more than one element is ambiguous",
+        r"(?P<array>[A-Za-z_][\w.]*)\s*(?P<sign><=?|>=?|==)\s*(?P<other>[\w.]+)",
+        "that compares every element: write min({array}) {sign} {other}, max(...), or an element, {array}[0]",
+    ),
+    Remark(
+        "^The truth value of an array with more than one element is ambiguous",
+        r"\d\s*[<>]=?\s*(?P<array>[A-Za-z_][\w.]*)",
+        "that compares every element: take min({array}), max({array}), or an element, {array}[0]",
     ),
     Remark(
         "^The truth value of an array with more than one element is ambiguous",

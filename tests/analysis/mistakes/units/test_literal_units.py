@@ -24,6 +24,10 @@ class Robot:
             "@timer(500)\ndef f(): ...",
             "a period is in seconds: the first call comes after 500 s; if 500 ms are meant, write 0.5",
         ),
+        (
+            "async def f(self):\n    await self.clock.sleep(500)",
+            "a sleep is in seconds, and this one takes 500 s; if 500 ms are meant, write 0.5",
+        ),
         ("self.create_timer(100, self.f)", "the first call comes after 100 s; if 100 ms are meant, write 0.1"),
         ("self.create_timer(timer_period_sec=2000, callback=f)", "if 2000 ms are meant, write 2"),
         (

@@ -14,6 +14,7 @@ from graphflow.analysis.mistakes.units.quaternions import angles_as_quaternions
     [
         ("goal.pose.orientation.z = 1.5708", "write math.sin(1.5708 / 2), and math.cos(1.5708 / 2) into w"),
         ("goal.pose.orientation.z = -1.57", "goal.pose.orientation.z is a part of a quaternion, not an angle"),
+        ("goal.pose.orientation.z = 90.0", "write math.sin(math.radians(90.0) / 2), and math.cos(math.radians(90.0) /"),
         ("t.transform.rotation.z = self.yaw", "write math.sin(self.yaw / 2)"),
         ("t.transform.rotation.z = math.pi / 2", "write math.sin((math.pi / 2) / 2)"),
         ("p.orientation.z = math.radians(90)", "write math.sin((math.radians(90)) / 2)"),

@@ -50,6 +50,18 @@ TICK = "    @timer(1.0, group=motion)\n    async def tick(self) -> None: ...\n"
             PARENT.format("Base"),
         ),
         (f"class N(Node):\n{TICK}", ""),
+        ("class N(Node):\n    rate = 2\n    half = self.rate / 2", "a class body has no self: write rate"),
+        ("class N(Node):\n    near = [self.rate for _ in 'a']", ""),
+        ("self.rate = 2", "only methods have self: move the line into one"),
+        (
+            "def turn():\n    self.rate = 2\nturn()",
+            "turn is no method: indent it below its class as def turn(self, ...), or give it the node",
+        ),
+        ("Duration.of(2.0)", "write from graphflow import Duration"),
+        (
+            "x = Duration",
+            "write from graphflow import Duration or from graphflow.msgs.builtin_interfaces.msg import Duration",
+        ),
         ("class N(Base):\n    def work(self):\n        return 2 * gain\nN().work()", "write self.gain"),
         ("class N(Base):\n    def work(self):\n        return 2 * gian\nN().work()", ""),
         ("motion", ""),
