@@ -47,7 +47,7 @@ def test_other_ways_to_enter(caplog: pytest.LogCaptureFixture) -> None:
     assert caplog.messages == []
 
 
-async def test_with_in_place_of_async_with() -> None:
+async def test_with_in_place_of_async_with(graph: Graph) -> None:
     """In a coroutine, the form alone is wrong."""
     block = running(Asker())
     with pytest.raises(TypeError, match=r"write async with graphflow\.running\(Asker\(\)\): \.\.\.$"):

@@ -59,9 +59,8 @@ def test_a_file_of_a_package(tmp_path: Path, missing: str, is_told: bool) -> Non
     told = f"to run a file of arms, which imports arms: graphflow run arms.lift, in {tmp_path.resolve()}\n"
     assert done.stderr.endswith(told) is is_told
     assert done.stderr.count("graphflow run") == is_told
-    (tmp_path / "arms" / "lift.py").write_text(
-        f"from graphflow import Node\nfrom {missing} import clamp\nasyncio.run(main())\n"
-    )
+    lines = ("from graphflow import Node", f"from {missing} import clamp", "asyncio.run(main())", "")
+    (tmp_path / "arms" / "lift.py").write_text("\n".join(lines))
     done = subprocess.run(program, cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
     assert done.stderr.endswith(told.replace("graphflow run", "python -m")) is is_told
 
