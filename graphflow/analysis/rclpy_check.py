@@ -23,6 +23,7 @@ from graphflow.analysis.rclpy_flags import Polled, changers, polled, written_fro
 from graphflow.analysis.rclpy_futures import SPINS, dotted, futures_of, polled_futures
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 from graphflow.analysis.uncalled import uncalled_methods
+from graphflow.analysis.unspun_waits import unspun_waits
 from graphflow.errors import Place
 from graphflow.reading import found_text
 
@@ -276,6 +277,7 @@ def findings_in(path: Path) -> list[Finding]:
     for tree, file in _trees_in(path):
         idle = _idle_loops(tree)
         found += (f for cls in _classes(tree, file) for f in cls.findings() if f.place.line not in idle)
+        found += unspun_waits(tree, file)
     return sorted(dict.fromkeys(found), key=lambda f: f.place)
 
 

@@ -59,6 +59,8 @@ class ContextState:
         self.domain = domain_id(domain)
         self.is_ok = True
         """Whether the context has not been shut down."""
+        self.was_interrupted = False
+        """Whether a signal has shut it down, such as that of Ctrl-C."""
         self._ends_with_process = False
         self._context: Context | None = None
         self._lock = threading.Lock()
@@ -107,6 +109,11 @@ class ContextState:
         if self.nodes.pop(node, None) is not None:
             for notify in self.on_leaving:
                 notify(node)
+
+    def interrupt(self) -> bool:
+        """End the context because of a signal; return whether it was still running. Signal-safe."""
+        self.was_interrupted = self.is_ok
+        return self.end()
 
     def end(self) -> bool:
         """Mark the context as ended and wake all waiting threads; return whether it was still running. Signal-safe."""

@@ -69,6 +69,10 @@ def _stamp(error: BaseException, frames: list[FrameType]) -> str:
         if isinstance(thing, StrictMessage) and type(thing).__name__ in ("Time", "Duration"):
             kind = type(thing).__name__
             return f"{path} is a message: write rclpy.{kind.lower()}.{kind}.from_msg({path})"
+    for path in PATH.findall(line_of(frames)):
+        thing = named(path, users[-1])
+        if f"{type(thing).__module__}.{type(thing).__name__}" == "rclpy.duration.Duration":
+            return f"{path} is a Duration: write ({path}.nanoseconds / 1e9), its seconds"
     return ""
 
 
@@ -116,7 +120,8 @@ def _hidden(error: BaseException, _: list[FrameType]) -> str:
 
 
 def _index(error: BaseException, frames: list[FrameType]) -> str:
-    return advise_on_index(error, line_of(frames))
+    users = own(frames)
+    return advise_on_index(error, line_of(frames), lambda path: named(path, users[-1]) if users else None)
 
 
 def _without_terminal(error: BaseException, _: list[FrameType]) -> str:
@@ -163,8 +168,8 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _stamp,
     _text,
     message_as_value,
-    _index,
     _without_terminal,
     _no_argument,
+    _index,
 )
 """The rules, in order of precedence."""

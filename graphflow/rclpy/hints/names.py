@@ -172,6 +172,9 @@ def _unbound(name: str, frame: FrameType) -> str:
         return "write import rclpy"
     if way := _in_rclpy(name, "rclpy"):
         return way
+    for package in ("tf2_ros", "message_filters"):
+        if hasattr(import_module(package), name):
+            return f"write from {package} import {name}"
     line = imports(name) or MODULES.get(name, "")
     return f"write {line}" if line else ""
 

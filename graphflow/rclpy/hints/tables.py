@@ -46,7 +46,8 @@ TEXTS: dict[str, str] = {
     ),
     r"rcl_shutdown already called": "rclpy was already shut down, as Ctrl-C does: end with rclpy.try_shutdown()",
     r"context is invalid|[Cc]ontext must be initialized": (
-        "rclpy was already shut down, as Ctrl-C does: publish earlier, and end with rclpy.try_shutdown()"
+        "rclpy was shut down before this line, by Ctrl-C or by rclpy.shutdown(): do this earlier, and end with "
+        "rclpy.try_shutdown()"
     ),
     r"cannot use Destroyable": (
         "it was already destroyed, by itself or with its node: use it earlier, and call destroy_node() last"
@@ -94,6 +95,9 @@ TEXTS: dict[str, str] = {
     ),
     r"Third element (.*) at index .* is not a ParameterDescriptor": (
         "the third argument is a ParameterDescriptor(description={0!r}), from rcl_interfaces.msg"
+    ),
+    r"not supported between instances of .*'array\.array'": (
+        "that is a whole array: compare an element, as in ranges[0], or min(ranges)"
     ),
     r"parameter must be instance of type": "write set_parameters([Parameter('name', value=6)])",
     r"History and/or depth settings are required|KEEP_LAST without a depth": (

@@ -250,10 +250,10 @@ def test_a_field_of_the_result_in_the_handle(name: str, sentence: str) -> None:
 
 
 def test_an_argument_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The number of those that the program was given is told; other lists are left alone."""
+    """The number of those that the program was given is told; of other lists, that of their values."""
     monkeypatch.setattr(sys, "argv", ["add_client", "2"])
     assert hint_of(lambda: sys.argv[2]).startswith("the program was given 1 argument: write more behind its name")
-    assert hint_of(lambda: NUMBERS[5]) == ""
+    assert hint_of(lambda: NUMBERS[5]) == "NUMBERS has 3 values, [0] to [2]"
 
 
 class Early(Node):

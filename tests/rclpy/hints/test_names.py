@@ -96,6 +96,16 @@ LAMPS = [
         "rclpy.node is a module, and no class: from rclpy.node import Node, and write Node in place of rclpy.node",
     ),
     ("def tick(self):\n    import os\n    class Light(os):\n        pass", "os is a module, and no class"),
+    ("def tick(self):\n    TransformListener(None, self)", "write from tf2_ros import TransformListener"),
+    (
+        "def tick(self):\n    span = self.get_clock().now() - self.get_clock().now()\n    1.0 / span",
+        "span is a Duration: write (span.nanoseconds / 1e9), its seconds",
+    ),
+    ("def tick(self):\n    n = [1, 2]\n    n[2]", "n has 2 values, [0] to [1]"),
+    (
+        "def tick(self):\n    from array import array\n    near = array('f', [1.0]) < 2.0",
+        "that is a whole array: compare an element, as in ranges[0], or min(ranges)",
+    ),
     ("print(Lamp)", "this line is inside class Lamp: indent it less"),
 ]
 

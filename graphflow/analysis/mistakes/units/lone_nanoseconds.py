@@ -1,4 +1,4 @@
-"""Stamps whose nanoseconds alone are taken for a time: `stamp.nanosec * 1e-9` starts anew in each second."""
+"""Nanoseconds that are no seconds: `stamp.nanosec * 1e-9` starts anew in each second; `x / d.nanoseconds / 1e9`."""
 
 from __future__ import annotations
 
@@ -10,6 +10,15 @@ from graphflow.analysis.syntax import FunctionNode, nodes_in
 
 def lone_nanoseconds(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines that compute with `nanosec` in functions that never read `sec`; each comes with its correction."""
+    for node in nodes_in(code):
+        match node:
+            case ast.BinOp(
+                left=ast.BinOp(left=number, op=ast.Div(), right=ast.Attribute(attr="nanoseconds") as span),
+                op=ast.Div(),
+                right=factor,
+            ) if _is_billion(factor):
+                text = "this divides by the nanoseconds and by 1e9; in parentheses they are seconds"
+                yield node.lineno, f"{text}: {ast.unparse(number)} / ({ast.unparse(span)} / 1e9)"
     for function in nodes_in(code):
         if not isinstance(function, FunctionNode):
             continue

@@ -99,7 +99,7 @@ def _caught(number: int, frame: FrameType | None) -> None:
     _put_off.pop(number, None)
     swallowed_interrupts.end_if_stuck(frame)
     is_ending = not threading.main_thread().is_alive()  # the interpreter waits only for other threads to end
-    ended = [context for context in list(_watched) if context.life is not None and context.life.end()]
+    ended = [context for context in list(_watched) if context.life is not None and context.life.interrupt()]
     if ended and not is_ending:
         swallowed_interrupts.watch()
     for context in ended:

@@ -71,7 +71,7 @@ def _hint_with_name(thing: AttributeHints, name: str, error: AttributeError) -> 
     frame = parts[-1].tb_frame
     line = linecache.getline(frame.f_code.co_filename, parts[-1].tb_lineno)
     owners = (path.rpartition(".") for path in _PATH.findall(line))
-    named = (owner for owner, _, attribute in owners if attribute == name and _named(owner, frame) is thing)
+    named = (owner for owner, _, attribute in owners if attribute == name and named_in(frame, owner) is thing)
     return hint.replace("IT", next(named, "it"))
 
 
@@ -124,13 +124,13 @@ def _written_to(error: AttributeError) -> tuple[object, str | None]:
     frame, line = parts[-1].tb_frame, linecache.getline(parts[-1].tb_frame.f_code.co_filename, parts[-1].tb_lineno)
     for path in _PATH.findall(line):
         owner, _, attribute = path.rpartition(".")
-        thing = _named(owner, frame) if attribute == found["name"] else None
+        thing = named_in(frame, owner) if attribute == found["name"] else None
         if type(thing).__name__ == found["kind"]:
             return thing, attribute
     return None, None
 
 
-def _named(path: str, frame: FrameType) -> object:
+def named_in(frame: FrameType, path: str) -> object:
     """Return the object that a dotted name refers to in a frame; None if finding it would run user code."""
     first, *rest = path.split(".")
     thing = {**frame.f_globals, **frame.f_locals}.get(first)

@@ -1,4 +1,4 @@
-"""Indices of lists: `ranges[len(ranges) / 2]`, which is no whole number, and slices across the end of a list.
+"""Indices of lists: no whole number, as in `ranges[len(ranges) / 2]`, or beyond the end, and slices across the end.
 
 Such a slice, as `scan.ranges[-20:20]`, is empty, where both ends of a scan were meant.
 """
@@ -6,22 +6,35 @@ Such a slice, as `scan.ranges[-20:20]`, is empty, where both ends of a scan were
 from __future__ import annotations
 
 import re
+from array import array
+from collections.abc import Callable
 
 _EMPTY = re.compile(
     "^(min|max)\\(\\) (arg is an empty sequence|iterable argument is empty)|^zero-size array to reduction operation"
 )
 _ACROSS = re.compile(r"(?P<list>\b[A-Za-z_][\w.]*)\[-(?P<last>\d+) *: *(?P<first>\d+)\]")
+_INDEXED = re.compile(r"\b([A-Za-z_][\w.]*)\[")
 _FRACTION = re.compile(r" indices must be integers(?: or slices, not float|, not 'float'|$)")
 _DIVIDED = re.compile(r"\[[^\[\]]*[^\[\]/](?P<slash>/)[^\[\]/][^\[\]]*\]")
 
 
-def advise_on_index(error: BaseException, line: str) -> str:
+def advise_on_index(error: BaseException, line: str, named: Callable[[str], object]) -> str:
     """Return how to write an index or a slice that has raised an error; "" for other errors.
 
     Args:
         line: The user's line that raised the error.
+        named: Returns the object of a dotted name in that line.
     """
-    return _fraction(error, line) or _empty_slice(error, line)
+    return _fraction(error, line) or _beyond(error, line, named) or _empty_slice(error, line)
+
+
+def _beyond(error: BaseException, line: str, named: Callable[[str], object]) -> str:
+    if not isinstance(error, IndexError):
+        return ""
+    for path in _INDEXED.findall(line):
+        if isinstance(thing := named(path), (list, tuple, array)):
+            return f"{path} has {len(thing)} values, [0] to [{len(thing) - 1}]" if thing else f"{path} is empty"
+    return ""
 
 
 def _fraction(error: BaseException, line: str) -> str:

@@ -9,7 +9,8 @@ from asyncio import InvalidStateError
 from typing import NamedTuple
 
 from graphflow.analysis.hiding import hidden
-from graphflow.analysis.user_code import parts_of, place_in
+from graphflow.analysis.user_code import is_users, parts_of, place_in
+from graphflow.runtime.mistakes.errors.attribute_errors import named_in
 from graphflow.runtime.mistakes.errors.name_errors import owner_of
 from graphflow.runtime.mistakes.errors.text_numbers import text_for_number
 from graphflow.runtime.mistakes.rclpy_words import EXAMPLES
@@ -245,7 +246,16 @@ REMARKS = (
     ),
 )
 _CALL = re.compile(r"(?:(?P<owner>\w+)\.)?(?P<name>\w+)\(\) (got an unexpected|missing \d|takes )")
-_CLASSES = (TypeError, AttributeError, NameError, UnboundLocalError, RuntimeError, ValueError, InvalidStateError)
+_CLASSES = (
+    TypeError,
+    AttributeError,
+    NameError,
+    UnboundLocalError,
+    RuntimeError,
+    ValueError,
+    IndexError,
+    InvalidStateError,
+)
 _OURS = ("ServiceClient", "GoalClient", "TopicPublisher")
 
 
@@ -286,7 +296,13 @@ def _of_kind(error: BaseException, line: str) -> str:
     from graphflow.runtime.mistakes.errors.class_errors import class_in_place  # most programs never need them
     from graphflow.runtime.mistakes.errors.indices import advise_on_index
 
-    return class_in_place(error) or advise_on_index(error, line)
+    return class_in_place(error) or advise_on_index(error, line, lambda path: _named(error, path))
+
+
+def _named(error: BaseException, path: str) -> object:
+    """Return the object that a dotted name refers to in the user's line that raised an error."""
+    frames = [part.tb_frame for part in parts_of(error.__traceback__) if is_users(part.tb_frame.f_code.co_filename)]
+    return named_in(frames[-1], path) if frames else None
 
 
 def _is_in_coroutine(error: BaseException) -> bool:

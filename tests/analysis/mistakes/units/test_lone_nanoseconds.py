@@ -28,6 +28,13 @@ def test_a_part_of_a_second(line: str, stamp: str) -> None:
     assert text.endswith(WAY.format(stamp))
 
 
+def test_a_division_by_both() -> None:
+    """The sentence has the parentheses that are missing; with them, nothing is told."""
+    [(_, text)] = lone_nanoseconds(ast.parse("k = self.kd * error / dt.nanoseconds / 1e9"))
+    assert text.endswith("in parentheses they are seconds: self.kd * error / (dt.nanoseconds / 1e9)")
+    assert [*lone_nanoseconds(ast.parse("k = error / (dt.nanoseconds / 1e9)"))] == []
+
+
 @pytest.mark.parametrize(
     "line",
     [

@@ -63,7 +63,7 @@ def _of_numbers(transform: Transform, frame: str) -> tuple[str, ...]:
         return f"{wrong} of the transform of {frame!r} is {numbers[wrong]}", "check the number before it is sent"
     if abs(squared - 1) <= TOLERANCE:
         return ()
-    fault = f"the rotation of {frame!r} is a quaternion of length {math.sqrt(squared):.3g}, not 1"
+    fault = f"the rotation of {frame!r} is a quaternion of length {math.sqrt(squared):.4g}, not 1"
     is_angle = w in (0, 1) and squared > w
     return fault, f"angles are converted: {_EULER}, in radians" if is_angle else _way_to_unit(squared)
 

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 MANY = 10
 """The number of live entities of one kind, name and line that is reported."""
+MANY_TIMERS = 5
+"""The same for timers that a callback creates: each of its runs adds one, and all go on."""
 MANY_SUBSCRIPTIONS = 3
 """The same for subscriptions with one callback, which handles every message as often."""
 MANY_APART = 50
@@ -55,13 +57,16 @@ def count(node: Node, call: str, made: Any) -> None:
         _warn_of_twin(node, made, place)
     elif call == "create_subscription":
         _warn_of_same(node, made, place)
-    origin = Origin(place, asked.frame.f_code, _name(made, is_again=is_in_run(asked.frame)))
+    is_again = is_in_run(asked.frame)
+    is_once = asked.frame.f_code.co_name == "__init__" and not is_again
+    origin = Origin(place, asked.frame.f_code, made if is_once and kind == "timers" else _name(made, is_again=is_again))
     made.made_at = origin
     if call in ("create_subscription", "create_service", "create_timer"):
         warn_of_hiding(node, made, asked.frame.f_code, _with_callbacks(node))
     alike = [other for other in getattr(internals_of(node), kind) if other.made_at == origin and _is_alive(other)]
     is_often = call == "create_subscription" and _is_heard_often(made, alike)
-    if (len(alike) >= MANY or is_often) and place not in _reported:
+    many = MANY_TIMERS if is_again and kind == "timers" else MANY
+    if (len(alike) >= many or is_often) and place not in _reported:
         if len(alike) < MANY_APART and kind == "timers" and len(set(map(_bound, alike))) == len(alike):
             return  # each is for something else, such as one turtle of several
         _reported.add(place)
@@ -128,7 +133,13 @@ def _is_heard_often(made: Subscription, alike: list[Subscription]) -> bool:
 
 def _for_delay(made: Any) -> str:
     """Return the other remedy for a timer: it may be meant to run once."""
-    return "; one that should run once is cancelled in its callback" if isinstance(made, Timer) else ""
+    if not isinstance(made, Timer):
+        return ""
+    name = getattr(made.callback, "__name__", "")
+    called = f"self.{name}()" if name.isidentifier() and hasattr(made.callback, "__self__") else "..."
+    period = made.timer_period_ns / 1e9
+    way = f"timer = self.create_timer({period:g}, lambda: (timer.cancel(), {called}))"
+    return f"; one that should run once cancels itself: {way}"
 
 
 def _is_alive(other: object) -> bool:

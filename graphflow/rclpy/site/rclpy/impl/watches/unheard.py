@@ -30,9 +30,10 @@ def attend(life: ContextState) -> None:
 
 
 def _tell(node: Node) -> None:
-    if failure() is not None or time.monotonic() - internals_of(node).begun > BRIEF:
+    inner = internals_of(node)
+    if failure() is not None or inner.life.was_interrupted or time.monotonic() - inner.begun > BRIEF:
         return
-    for publisher in internals_of(node).publishers:
+    for publisher in inner.publishers:
         endpoint = publisher.endpoint
         if publisher.made_at is not None and 0 < endpoint.published == endpoint.unheard:
             many = "message that was published" if endpoint.published == 1 else "messages that were published"

@@ -49,7 +49,7 @@ EULER = "angles are converted: x, y, z, w = tf_transformations.quaternion_from_e
     ("rotation", "length", "way"),
     [
         (Quaternion(z=90.0, w=0.0), "90", EULER),
-        (Quaternion(x=0.1, z=0.5, w=1.0), "1.12", EULER),
+        (Quaternion(x=0.1, z=0.5, w=1.0), "1.122", EULER),
         (Quaternion(x=1.0, z=2.0, w=2.0), "3", "divide x, y, z and w by that length"),
         (Quaternion(w=0.0), "0", "no rotation has w = 1.0"),
     ],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import pytest
 from std_msgs.msg import String
@@ -41,11 +42,52 @@ def test_what_a_callback_makes(node: Node, spin: Spinner, caplog: Caplog) -> Non
     first, line = "test_repeats.py:", tick.__code__.co_firstlineno
     way = "create one in __init__, and keep it in an attribute"
     assert told(caplog) == [
+        f"/node has 5 timers of <lambda> created in {first}{line + 3}: {way}; one that should run once cancels itself: "
+        "timer = self.create_timer(10, lambda: (timer.cancel(), ...))",
         f"/node has 10 publishers of /chat created in {first}{line + 1}: {way}",
         f"/node has 10 clients of /switch created in {first}{line + 2}: {way}",
-        f"/node has 10 timers of <lambda> created in {first}{line + 3}: {way}; "
-        "one that should run once is cancelled in its callback",
     ]
+
+
+def test_timers_that_a_constructor_makes(node: Node, caplog: Caplog) -> None:
+    """They are as many as it wants, also of one callback."""
+
+    class Fleet(Node):
+        def __init__(self) -> None:
+            super().__init__("fleet")
+            for number in range(MANY + 2):
+                self.create_timer(10.0 + number, self.beat)
+
+        def beat(self) -> None: ...
+
+    Fleet()
+    assert told(caplog) == []
+
+
+def test_a_timer_that_runs_once(node: Node, spin: Spinner, caplog: Caplog) -> None:
+    """The way is written with its callback, and works."""
+    runs: list[str] = []
+
+    class Delays(Node):
+        def __init__(self) -> None:
+            super().__init__("delays")
+            self.create_timer(0.001, self.tick)
+
+        def tick(self) -> None:
+            self.create_timer(10.0, self.answer)
+
+        def answer(self) -> None:
+            runs.append("answer")
+
+    self = Delays()
+    spin.executor.add_node(self)
+    spin(lambda: told(caplog))
+    [text] = told(caplog)
+    assert text.endswith("timer = self.create_timer(10, lambda: (timer.cancel(), self.answer()))")
+    known: dict[str, Any] = {"self": self}
+    exec(text.rpartition("itself: ")[2].replace("10", "0.001"), known)
+    spin(lambda: known["timer"].is_canceled())
+    assert runs == ["answer"]
 
 
 def test_a_callback_that_subscribes_again(node: Node, spin: Spinner, caplog: Caplog) -> None:

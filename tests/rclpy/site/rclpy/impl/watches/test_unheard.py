@@ -8,6 +8,7 @@ from std_msgs.msg import String
 from tf2_ros import StaticTransformBroadcaster
 
 import rclpy
+from rclpy.impl.nodes import internals_of
 from rclpy.impl.watches import unheard
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -50,6 +51,16 @@ def test_what_is_kept_for_late_subscriptions(node: Node, caplog: Caplog, is_hear
         "rclpy.spin(node)"
     )
     assert [told for told in caplog.messages if "keeps" in told] == ([] if is_heard else [text])
+
+
+@pytest.mark.parametrize("is_latched", [True, False])
+def test_a_program_that_is_interrupted(node: Node, caplog: Caplog, is_latched: bool) -> None:
+    """Whoever has stopped it knows that it has ended."""
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_publisher(String, "chat", latched if is_latched else 10).publish(String())
+    internals_of(node).life.interrupt()
+    node.destroy_node()
+    assert [text for text in caplog.messages if text.startswith("/chat: ")] == []
 
 
 def test_a_static_transform(node: Node, caplog: Caplog) -> None:

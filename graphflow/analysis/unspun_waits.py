@@ -1,0 +1,65 @@
+"""Waits of an rclpy program's own functions, such as `main`, for what only a spin would bring, while nothing spins.
+
+A file in which a thread may spin is left out.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from graphflow.analysis.deadlock_check import Finding, Grade
+from graphflow.analysis.rclpy_futures import dotted, polled_futures
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
+from graphflow.errors import Place
+
+_SPINS = ("spin", "spin_once", "spin_until_future_complete", "spin_once_until_future_complete", "spin_some")
+_THREADS = ("Thread", "Timer", "ThreadPoolExecutor", "run_in_executor", "to_thread", "start_new_thread")
+_MAKERS = ("create_client", "create_rate")
+
+
+def unspun_waits(module: ast.Module, file: str) -> Iterator[Finding]:
+    """Find the waits in the functions outside of classes; each run that comes to one stays there."""
+    if any(last_name(node.func) in _THREADS for node in nodes_in(module) if isinstance(node, ast.Call)):
+        return
+    for function in module.body:
+        if isinstance(function, FunctionNode):
+            yield from _of(function, file)
+
+
+def _of(function: FunctionNode, file: str) -> Iterator[Finding]:
+    made = _made(function)
+    for node, parents in walk(function, into_functions=False):
+        if not isinstance(node, (ast.While, ast.Call)):
+            continue
+        text = ""
+        match node:
+            case ast.While(test=test, body=body) if not any(map(_spins, body)):
+                future = next(filter(None, map(dotted, polled_futures(test))), "")
+                way = f"write rclpy.spin_until_future_complete(node, {future})"
+                text = f"the loop waits for {future}, and nothing spins meanwhile: {way}" if future else ""
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="call")) if made.get(name) == _MAKERS[0]:
+                way = f"future = {name}.call_async(request), then rclpy.spin_until_future_complete(node, future)"
+                text = f"{name}.call waits for the answer, and nothing spins meanwhile: {way}"
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="sleep")) if made.get(name) == _MAKERS[1]:
+                thread = "Thread(target=rclpy.spin, args=(node,), daemon=True).start()"
+                way = f"make a timer in its place, or spin in a thread before: {thread}"
+                text = f"{name}.sleep waits for a timer, and nothing spins meanwhile: {way}"
+        if text:
+            is_sure = not any(isinstance(parent, (ast.If, ast.Try, ast.ExceptHandler)) for parent in parents)
+            grade: Grade = "CERTAIN" if is_sure else "IF THIS BRANCH RUNS"
+            yield Finding(grade, Place(file, node.lineno), f"{function.name}: {text}")
+
+
+def _made(function: FunctionNode) -> dict[str, str]:
+    """Return the names of a function's clients and rates, with the method that makes each."""
+    found: dict[str, str] = {}
+    for node in nodes_in(function):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=made)) if last_name(made) in _MAKERS:
+                found[name] = last_name(made)
+    return found
+
+
+def _spins(statement: ast.stmt) -> bool:
+    return any(isinstance(node, ast.Call) and last_name(node.func) in _SPINS for node in nodes_in(statement))
