@@ -270,7 +270,7 @@ class _Translation:
             pairs = [pair(remap, "from", "to", self._complain) for remap in items(item.entries["remap"])]
             rules = {key: value for pair in pairs for key, value in pair.entries.items()}
             entries["remap"] = Item(rules, item.entries["remap"].place, item.entries["remap"].key)
-        params(item, entries, self._complain)
+        params(item, entries, self._complain, self._note)
         if found is None:
             entries = {**self._program(item, package, name), **entries}
         else:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from graphflow.launchfiles.attributes import has_value
 from graphflow.launchfiles.attributes import words as words_of
@@ -14,6 +15,7 @@ from graphflow.markup.substitution_words import as_word
 from graphflow.markup.substitutions import Written
 from graphflow.markup.tree import Item, items, located
 from graphflow.names import did_you_mean
+from graphflow.reading import found_text
 
 _OPTIONS = {"-r": "remap", "--remap": "remap", "-p": "params", "--param": "params"}
 """The keys of a graph file by ROS 2's command-line options."""
@@ -107,10 +109,12 @@ def _written(item: Item) -> str:
     return str(item.value).lower() if isinstance(item.value, bool) else str(item.value)
 
 
-def params(item: Item, entries: dict[str, Item], complain: Complain) -> None:
+def params(item: Item, entries: dict[str, Item], complain: Complain, note: Complain) -> None:
     """Convert the `param` attribute to the entries `params` and `params_file`."""
     files: list[Item] = []
-    values = _params(items(item.entries.get("param")), files, complain)
+    given = items(item.entries.get("param"))
+    values = _params(given, files, complain)
+    _note_order(given, note)
     if files:
         entries["params_file"] = Item(files, files[0].place, files[0].place)
     if values:
@@ -140,6 +144,20 @@ def _params(params: list[Item], files: list[Item], complain: Complain) -> dict[s
             kind = str(param.entries["type"].value) if "type" in param.entries else ""
             values.update({key: parameter(value, kind, complain) for key, value in named.entries.items()})
     return values
+
+
+def _note_order(given: list[Item], note: Complain) -> None:
+    """Note the values that a parameter file behind them sets as well: in ROS 2 the last one wins."""
+    before: set[str] = set()
+    for param in given:
+        if "from" not in param.entries:
+            before |= {str(param.entries["name"].value)} if "name" in param.entries else set()
+            continue
+        file = Path(str(param.entries["from"].value))
+        text = found_text(file, "replace") if before and file.is_file() else ""
+        for name in sorted(before & set(re.findall(r"^\s*[\"']?([\w./]+)[\"']?\s*:", text, re.MULTILINE))):
+            way = "put the file first, or leave the value out"
+            note(param.place, f"param: {name} has a value before {file.name}, which wins here, and not in ROS 2: {way}")
 
 
 def _refuse_unknown(param: Item, complain: Complain) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -73,7 +74,7 @@ def test_parameters_and_files_of_them() -> None:
         {"name": "c", "param": [{"name": "d", "value": "true", "type": "bool"}]},
     ]
     entries: dict[str, Item] = {}
-    params(located({"param": given}, HERE), entries, complained)
+    params(located({"param": given}, HERE), entries, complained, complained)
     assert {key: item.plain() for key, item in entries.items()} == {
         "params_file": ["p.yaml"],
         "params": {"a": 10.0, "b": "1e3", "c": {"d": True}},
@@ -106,7 +107,7 @@ def test_a_parameter_of_another_type() -> None:
     """Is told with its place, and so is an attribute that means nothing."""
     told: list[str] = []
     given: Data = {"param": [{"name": "a", "value": "x", "type": "int", "valeu": 1}]}
-    params(located(given, HERE), {}, lambda place, text: told.append(f"{place}: {text}"))
+    params(located(given, HERE), {}, lambda place, text: told.append(f"{place}: {text}"), complained)
     assert told == [
         "f.yaml:1:1: param: unknown attribute 'valeu'; did you mean 'value'?",
         "f.yaml:1:1: param: expected an integer, got 'x'",
@@ -134,5 +135,23 @@ def test_a_file_with_substitutions() -> None:
         {"from": "$(dirname)/a b.yaml", "allow_substs": True},
         {"from": "c.yaml", "allow_substs": "false"},
     ]
-    params(located({"param": files}, HERE), entries, complained)
+    params(located({"param": files}, HERE), entries, complained, complained)
     assert entries["params_file"].plain() == ["$(substituted '$(dirname)/a b.yaml')", "c.yaml"]
+
+
+def test_a_value_before_a_file_that_sets_it_too(tmp_path: Path) -> None:
+    """The other order than in ROS 2 is noted; a value behind the file wins there, too."""
+    file = tmp_path / "speeds.yaml"
+    file.write_text("/**:\n  ros__parameters:\n    max_speed: 1.25\n")
+    value: Data = {"name": "max_speed", "value": 9.0}
+    other: Data = {"name": "speed", "value": 2.0}
+    told: list[str] = []
+    lists: list[list[Data]] = [
+        [other, value, {"from": str(file)}],
+        [{"from": str(file)}, value],
+        [other, {"from": str(file)}],
+    ]
+    for given in lists:
+        params(located({"param": given}, HERE), {}, complained, lambda _, text: told.append(text))
+    way = "put the file first, or leave the value out"
+    assert told == [f"param: max_speed has a value before speeds.yaml, which wins here, and not in ROS 2: {way}"]

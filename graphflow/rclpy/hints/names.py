@@ -173,7 +173,7 @@ def _unbound(name: str, frame: FrameType) -> str:
     if way := _in_rclpy(name, "rclpy"):
         return way
     for package in ("tf2_ros", "message_filters"):
-        if hasattr(import_module(package), name):
+        if name in vars(import_module(package)):
             return f"write from {package} import {name}"
     line = imports(name) or MODULES.get(name, "")
     return f"write {line}" if line else ""

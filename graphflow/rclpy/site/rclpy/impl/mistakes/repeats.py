@@ -6,7 +6,7 @@ ROS 2 keeps them all silently, until memory or processor time runs out.
 from __future__ import annotations
 
 import logging
-from types import FunctionType
+from types import FunctionType, MethodType
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import Place
@@ -135,8 +135,7 @@ def _for_delay(made: Any) -> str:
     """Return the other remedy for a timer: it may be meant to run once."""
     if not isinstance(made, Timer):
         return ""
-    name = getattr(made.callback, "__name__", "")
-    called = f"self.{name}()" if name.isidentifier() and hasattr(made.callback, "__self__") else "..."
+    called = f"self.{made.callback.__name__}()" if isinstance(made.callback, MethodType) else "..."
     period = made.timer_period_ns / 1e9
     way = f"timer = self.create_timer({period:g}, lambda: (timer.cancel(), {called}))"
     return f"; one that should run once cancels itself: {way}"
