@@ -71,6 +71,15 @@ def uncalled(source: str, file: str) -> str:
     return ""
 
 
+def named_only(module: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield the lines that consist of the name of a function that would run nodes, such as `main`."""
+    functions = {node.name for node in module.body if isinstance(node, FunctionNode)}
+    for node in nodes_in(module):
+        match node:
+            case ast.Expr(value=ast.Name(id=name)) if name in functions:
+                yield node.lineno, f"{name} without parentheses calls nothing; write: {name}()"
+
+
 def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Yield the lines that name a method without calling it, such as `self.timer.cancel`, each with a message."""
     own = _own_attributes(code)

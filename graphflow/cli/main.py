@@ -114,7 +114,13 @@ class _Verbs(Verbs):
         group = self.get_command(ctx, rest[0]) if rest else None
         if isinstance(group, click.Group) and group.get_command(ctx, word) is not None:
             return f"no such command {word!r}; did you mean: graphflow {' '.join([rest[0], word, *rest[1:]])}"
-        return f"no such command {word!r}; did you mean: graphflow run {' '.join(words)}" if _runs(words) else ""
+        if _runs(words):
+            return f"no such command {word!r}; did you mean: graphflow run {' '.join(words)}"
+        from graphflow.workspace.executables import with_graphflow
+
+        package = next((package for package, name in with_graphflow() if name == word), None)
+        way = f"graphflow run {package} {' '.join(words)}"
+        return f"no such command {word!r}; did you mean: {way}" if package is not None else ""
 
     def unknown(self, ctx: click.Context, word: str) -> str:
         meant = (

@@ -172,7 +172,9 @@ def _begin(program: Program) -> None:
         runpy.run_path(str(program.file), run_name="__main__")
         unrun.report(program.file)
         return
-    called: object = import_module(program.entry.module)
+    module = import_module(program.entry.module)
+    _note_other(program, module)
+    called: object = module
     owner = called
     for part in program.entry.function.split("."):
         called, owner = getattr(called, part, None), called
@@ -184,6 +186,20 @@ def _begin(program: Program) -> None:
         name = f"{program.entry.module}:{program.entry.function}"
         raise UsageFault(f"{name} is a class: name a function in setup.py that makes one and spins it, such as main")
     sys.exit(called())
+
+
+def _note_other(program: Program, module: ModuleType) -> None:
+    """Note that what runs is another package's, whose module has the same name, or another package of that name."""
+    file = getattr(module, "__file__", None)
+    if file is not None and not program.file.samefile(file):
+        top = module.__name__.partition(".")[0]
+        text = f"this runs {file}, and not {program.file}: two packages have a folder {top} for their modules"
+        sys.stderr.write(f"note: {text}; rename one, in its setup.py as well\n")
+    for double in program.workspace.doubles:
+        first = program.workspace.packages[double.name].folder
+        if program.file.is_relative_to(first) or program.file.is_relative_to(double.folder):
+            text = f"{double.folder} is not used, since {first} is called {double.name!r}, too"
+            sys.stderr.write(f"note: {text}; rename one, or put an empty file COLCON_IGNORE into it\n")
 
 
 def _print_error(

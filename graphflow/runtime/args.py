@@ -169,6 +169,10 @@ def is_number_or_truth(text: str) -> bool:
     return text.lower() in ("true", "false") or text.lstrip("+-").replace(".", "", 1).isdecimal()
 
 
+_WITH_WORDS = ("--ros-args ", "-p ", "-r ", "--param ", "--remap ", "--params-file ")
+"""Beginnings of arguments that are several words in one, as launch files may write them."""
+
+
 def missed(arguments: Sequence[str]) -> str:
     """Return a sentence about arguments outside `--ros-args` that seem meant for ROS 2; "" if there are none.
 
@@ -181,6 +185,8 @@ def missed(arguments: Sequence[str]) -> str:
             in_ros = True
         elif argument == "--":
             in_ros = False
+        elif not in_ros and argument.startswith(_WITH_WORDS):
+            return f"{argument!r} is one word to ROS; write each apart: {argument.split()}"
         elif not in_ros and (option := _slip(argument)):
             rest = " ".join(arguments[place + 1 :])
             way = option if option == "--ros-args" else f"--ros-args {option}"

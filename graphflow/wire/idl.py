@@ -179,6 +179,11 @@ def _member(package: str, line: str) -> Field | Constant:
     constant = re.match(r"(\w+)\s*=(?!=)\s*(.*)\Z", rest)
     if constant:
         return _constant(type_, constant.group(1), constant.group(2))
+    if (misplaced := re.match(r"(\w+)\s*(\[[^\]]*\])", rest)) and not type_.array:
+        brackets = misplaced[2].replace(" ", "")
+        raise InterfaceError(f"{line!r}: the brackets belong to the type: {type_text}{brackets} {misplaced[1]}")
+    if (value := re.fullmatch(r"([A-Z][A-Z0-9_]*)\s+(-?[\d.]+);?", rest)) is not None:
+        raise InterfaceError(f"{line!r}: a constant has a =: {type_text} {value[1]}={value[2]}")
     name, *more = rest.split(None, 1)
     if more and more[0].startswith(_COMMENTS) and type_.base not in STRINGS:
         raise InterfaceError(f"{more[0]!r}: a comment begins with #")
@@ -272,6 +277,7 @@ def _constant(type_: FieldType, name: str, text: str) -> Constant:
         default = f"; a default has no =: {type_} {name} {text}" if _FIELD_NAME.match(name) else ""
         raise InterfaceError(f"constant {name!r}: only numbers, bool and string can be constants, not {type_}{default}")
     if not _CONSTANT_NAME.match(name):
+        text = text.rstrip(" ;")
         ways = f"; a constant: {type_} {name.upper()}={text}; a default of a field: {type_} {name} {text}"
         is_field = text and _FIELD_NAME.match(name)
         raise InterfaceError(f"constant name {name!r}: capitals, digits and single _ only{ways if is_field else ''}")

@@ -127,7 +127,11 @@ class SetupFile:
         if isinstance(self.tree, SyntaxError):
             line, why = self.tree.lineno or 1, self.tree.msg
             return [f"{self.file}:{line}: SyntaxError: {why}; until that is corrected it has no executables"]
-        found = [*_misspelt(self.tree), *(fault for node in self._elements() if (fault := self._fault_of(node)))]
+        found = [
+            *_misspelt(self.tree),
+            *_unimported(self.tree),
+            *(fault for node in self._elements() if (fault := self._fault_of(node))),
+        ]
         return [f"{self.file}:{line}: {text}" for line, text in [*found, *self._twice()]]
 
     def without_executables(self, package: str) -> list[str]:
@@ -200,6 +204,25 @@ def _misspelt(tree: ast.Module) -> Iterator[tuple[int, str]]:
                         match key:
                             case ast.Constant(value=str(group)) if _is_slip(group, "console_scripts"):
                                 yield key.lineno, f"nobody reads the group {group!r}; did you mean 'console_scripts'?"
+
+
+def _unimported(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Yield names that `data_files` needs and nothing imports, and lists that lack a comma between two tuples."""
+    nodes = list(ast.walk(tree))
+    known = {
+        (alias.asname or alias.name).partition(".")[0]
+        for node in nodes
+        if isinstance(node, (ast.Import, ast.ImportFrom))
+        for alias in node.names
+    }
+    for node in nodes:
+        match node:
+            case ast.Call(func=ast.Tuple()):
+                yield node.lineno, "a comma is missing between two tuples of the list"
+            case ast.Call(func=ast.Name(id="glob")) if "glob" not in known:
+                yield node.lineno, "glob is not imported; write at the top: from glob import glob"
+            case ast.Attribute(value=ast.Name(id="os")) if "os" not in known:
+                yield node.lineno, "os is not imported; write at the top: import os"
 
 
 def _is_slip(word: str, meant: str) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
@@ -9,6 +10,10 @@ from graphflow.reading import found_text
 from graphflow.workspace.packages import Folder, Package, Workspace, cmake_text, folders, workspace_around
 
 _BUILT = ("setup.py", "CMakeLists.txt")
+_SHARED = ("launch", "config", "params", "urdf", "rviz", "worlds", "maps", "meshes")
+"""Folders of a package that launch files read after the build."""
+_LISTED = 4
+"""Files that a line lists."""
 _LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
 _NEEDED = 'to make it a package, write in it: <package format="3"><name>{name}</name></package>'
 
@@ -58,19 +63,23 @@ def starts_of(package: Package) -> str:
     return "; to start it: " + ", or ".join(starts) if starts else ""
 
 
-def uninstalled_launch_files(package: Package) -> str:
-    """Return what a package's build lacks for ROS 2 to find its launch files; "" if it installs them."""
+def uninstalled_files(package: Package) -> str:
+    """Return what a package's build lacks for ROS 2 to find its launch files and the like; "" if it installs them."""
     setup, cmake = package.folder / "setup.py", package.folder / "CMakeLists.txt"
-    if not (package.folder / "launch").is_dir():
+    file, known = (setup, package.setup.text) if setup.is_file() else (cmake, cmake_text(package))
+    if not file.is_file():
         return ""
-    text = "does not install launch/, so that ROS 2 would not find it; add"
-    if setup.is_file():
-        way = "to data_files: (os.path.join('share', package_name, 'launch'), glob('launch/*'))"
-        return "" if "launch" in package.setup.text else f"{_shown(setup)} {text} {way}"
-    is_installed = not cmake.is_file() or "launch" in cmake_text(package)
-    return (
-        "" if is_installed else f"{_shown(cmake)} {text}: install(DIRECTORY launch DESTINATION share/${{PROJECT_NAME}})"
-    )
+    for folder in _SHARED:
+        files = sorted(one.name for one in (package.folder / folder).glob("*") if one.is_file())
+        if not files or re.search(rf"\b{folder}\b", known):
+            continue
+        text = f"{_shown(file)} does not install {folder}/, so that ROS 2 would not find it; add"
+        if file == cmake:
+            return f"{text}: install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})"
+        listed = ", ".join(repr(f"{folder}/{name}") for name in files[:_LISTED])
+        listed += ", ..." if files[_LISTED:] else ""
+        return f"{text} to data_files: ('share/{package.name}/{folder}', [{listed}]),"
+    return ""
 
 
 def inner_workspaces(workspace: Workspace) -> list[Path]:

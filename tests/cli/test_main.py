@@ -106,6 +106,7 @@ def test_version(capsys: pytest.CaptureFixture[str]) -> None:
         (["roscore"], "no such command 'roscore': none is needed: nodes find each other"),
         (["ros2", "topic", "list"], "leave out ros2: graphflow topic list"),
         (["turtlesim", "turtlesim_node"], "did you mean: graphflow run turtlesim turtlesim_node"),
+        (["tf2_echo", "base", "laser"], "did you mean: graphflow run tf2_ros tf2_echo base laser"),
         (["topic", "list", "--domain", "7"], "--domain goes before the verb: graphflow --domain 7 topic list"),
         (["topic", "lst"], "no such command 'lst'; did you mean 'list'?"),
         (["topic", "list", "--type"], "--show-types"),

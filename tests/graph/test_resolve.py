@@ -718,7 +718,7 @@ def test_a_namespace_without_effect_is_let_pass_in_launch_files(lamps: Path) -> 
     """As ROS does."""
     (lamps / "f.launch.yaml").write_text("launch: [{push_ros_namespace: {namespace: a}}]\n")
     [remark] = load(lamps / "f.launch.yaml").remarks
-    assert "so the namespace has no effect" in remark
+    assert "a namespace holds for the actions that follow it; put it before them" in remark
 
 
 def test_components_that_nobody_here_has_are_left_out_of_launch_files(lamps: Path) -> None:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from graphflow.errors import UsageFault
 from graphflow.msgs import registry
-from graphflow.rclpy.programs import _imported_in, _where_to_have, find_program
+from graphflow.rclpy.programs import _imported_in, _note_other, _where_to_have, find_program
 from graphflow.transport.rendezvous import free_endpoint
 from graphflow.workspace.packages import BUNDLED, find_workspace
 from tests.cases import slow
@@ -116,6 +118,26 @@ def test_what_a_package_has_not_is_told(workspace: Path) -> None:
     setup.write_text(SETUP.replace("]", " 'ours = lamp.ours:main']"))
     with pytest.raises(UsageFault, match=r"no executable 'ours'.*setup\.py:2: .* a comma is missing"):
         find_program("lamp", ["ours"], workspace)
+
+
+def test_another_package_with_the_same_modules(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What runs instead is named, and so is a copy of the package that is not used."""
+    found = find_program("lamp", ["lamp"], workspace)
+    assert found is not None
+    module = ModuleType("lamp.node")
+    module.__file__ = str(found.file)
+    _note_other(found, module)
+    assert capsys.readouterr().err == ""
+    copied = shutil.copytree(workspace / "src" / "lamp", workspace / "src" / "lamp_copy")
+    module.__file__ = str(copied / "lamp" / "node.py")
+    found = find_program("lamp", ["lamp"], workspace)
+    assert found is not None
+    _note_other(found, module)
+    first, second = capsys.readouterr().err.splitlines()
+    assert first.startswith(f"note: this runs {module.__file__}, and not {found.file}: two packages have a folder lamp")
+    assert second.startswith(
+        f"note: {copied} is not used, since {workspace / 'src' / 'lamp'} is called 'lamp', too; ren"
+    )
 
 
 def start(workspace: Path, *words: str) -> subprocess.Popen[str]:

@@ -182,6 +182,8 @@ def test_how_an_unknown_word_is_written() -> None:
     assert meant("a:=b") == "; write --ros-args -r a:=b"
     assert meant("_frame:=map") == "; write --ros-args -p frame:=map"
     assert meant("_rate:=2.0") == "; write --ros-args -p rate:=2.0"
+    apart = "['--ros-args', '-p', 'speed:=1.0']"
+    assert missed(["--ros-args -p speed:=1.0"]).endswith(f"is one word to ROS; write each apart: {apart}")
     assert missed(["-r", "___ns:=/a"]).endswith("; write --ros-args -r __ns:=/a")
 
 

@@ -59,6 +59,21 @@ def test_an_executable_without_its_function(tmp_path: Path) -> None:
             "setup.py:7: 'one: lamp.one:main' names no function; did you mean 'one = lamp.one:m",
         ),
         ("two = ", "one = ", "setup.py:8: 'one' is the name of the executable in line 7, too; rename one of them"),
+        (
+            "entry_points=",
+            "data_files=[('a', glob('a/*'))], entry_points=",
+            "setup.py:5: glob is not imported; write at the top: from glob import glob",
+        ),
+        (
+            "entry_points=",
+            "data_files=[(os.path.join('a', 'b'), [])], entry_points=",
+            "setup.py:5: os is not imported; write at the top: import os",
+        ),
+        (
+            "entry_points=",
+            "data_files=[('a', [])('b', [])], entry_points=",
+            "setup.py:5: a comma is missing between two tuples of the list",
+        ),
         ("one = lamp.one:main", "lamp", "setup.py:7: 'lamp' names no function; write 'NAME = PACKAGE.MODULE:FUNCTION'"),
     ],
 )

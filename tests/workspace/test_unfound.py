@@ -14,7 +14,7 @@ from graphflow.workspace.unfound import (
     outer_workspace,
     owners,
     starts_of,
-    uninstalled_launch_files,
+    uninstalled_files,
     why_no_package,
 )
 
@@ -93,10 +93,25 @@ def test_launch_files_that_are_not_installed(
     (folder / "setup.py").unlink()
     (folder / file).write_text(text)
     package = find_workspace(workspace.root).packages["lamp"]
-    assert uninstalled_launch_files(package) == ""
+    assert uninstalled_files(package) == ""
     (folder / "launch").mkdir()
-    found = uninstalled_launch_files(package)
+    assert uninstalled_files(package) == ""  # an empty folder
+    (folder / "launch" / "lamp.launch.py").touch()
+    found = uninstalled_files(package)
     assert found.startswith(told) if told else found == ""
+
+
+@pytest.mark.parametrize(("count", "end"), [(1, ""), (5, ", ...")])
+def test_files_that_are_not_installed(workspace: Workspace, count: int, end: str) -> None:
+    """The line that is missing can be pasted as it is; it needs no import."""
+    folder = workspace.packages["lamp"].folder
+    (folder / "config").mkdir()
+    files = [f"config/p{number}.yaml" for number in range(count)]
+    for file in files:
+        (folder / file).touch()
+    package = find_workspace(workspace.root).packages["lamp"]
+    listed = ", ".join(map(repr, files[:4]))
+    assert uninstalled_files(package).endswith(f"add to data_files: ('share/lamp/config', [{listed}{end}]),")
 
 
 def test_workspaces_within_another(workspace: Workspace) -> None:

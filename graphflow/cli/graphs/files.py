@@ -210,6 +210,7 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     if they are written for rclpy, and else counted. A Python launch file is executed in a process of its own. Files of
     parameters, and a package's setup.py, are checked, too.
     """
+    _refuse_other_files(Path(graph))
     path = _graph_meant(graph)
     if path is None:
         from graphflow.cli.graphs.ros_files import check_setup
@@ -266,6 +267,20 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
     more += f", {_count(unread, 'unread program')}" if unread else ""
     output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
     return exits.FAILED if certain else exits.OK
+
+
+def _refuse_other_files(file: Path) -> None:
+    """Check that a file is of a kind that is checked.
+
+    Raises:
+        UsageFault: It is part of a package; the text has the command that checks it.
+    """
+    kind = file.suffix.removeprefix(".")
+    if kind in ("msg", "srv", "action") and file.is_file():
+        name = f"{file.resolve().parents[1].name}/{kind}/{file.stem}"
+        raise UsageFault(f"{file} is an interface: graphflow interface show {name} reads it; graphflow ws checks all")
+    if file.name in ("CMakeLists.txt", "package.xml", "setup.cfg") and file.is_file():
+        raise UsageFault(f"{file} is part of a package: graphflow ws checks those of the workspace")
 
 
 _DESCRIBING = b"def generate_launch_description", b"LaunchService"

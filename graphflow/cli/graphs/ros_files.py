@@ -6,10 +6,14 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+import yaml
+
 from graphflow.cli import exits, output
 from graphflow.cli.graphs.sources import place_of
 from graphflow.errors import GraphFileError, Place, Problem, UsageFault
 from graphflow.graph import params_file
+from graphflow.graph.model import GraphFile, keys_of
+from graphflow.names import nearest
 from graphflow.reading import lenient_text
 from graphflow.workspace.packages import find_workspace
 from graphflow.workspace.project import shown
@@ -17,6 +21,8 @@ from graphflow.workspace.project import shown
 _SECTION = re.compile(r"""^\s+["']?ros_+param(?:eter)?s?["']?\s*:""", re.MULTILINE)
 _OTHER = re.compile(r"^(?:nodes|include|group|steps|templates|launch)\s*:", re.MULTILINE)
 """Keys at the top of a graph file, or of a launch file."""
+_SLIP = 0.8
+"""Similarity, from 0 to 1, from which a key counts as a misspelt one of a graph file."""
 _SHOWN = 5
 """Names that one line shows."""
 
@@ -24,7 +30,19 @@ _SHOWN = 5
 def is_parameters(file: Path) -> bool:
     """Return whether a YAML file has parameters by node, perhaps misspelt, and is no graph file."""
     text = lenient_text(file) if file.suffix in (".yaml", ".yml") else ""
-    return _SECTION.search(text) is not None and _OTHER.search(text) is None
+    return _OTHER.search(text) is None and (_SECTION.search(text) is not None or _is_flat(text))
+
+
+def _is_flat(text: str) -> bool:
+    """Return whether a text is a mapping of plain values by name, or by node, with no key of a graph file."""
+    try:
+        data = yaml.safe_load(text)
+    except (yaml.YAMLError, ValueError, RecursionError):
+        return False
+    if not isinstance(data, dict) or any(nearest(str(key), keys_of(GraphFile), cutoff=_SLIP) for key in data):
+        return False
+    inner = [value for one in data.values() for value in (one.values() if isinstance(one, dict) else [one])]
+    return bool(inner) and not any(isinstance(value, dict) for value in inner)
 
 
 def check_parameters(file: Path, *, as_json: bool) -> int:

@@ -12,6 +12,7 @@ from graphflow.analysis.deadlock_check import Finding
 from graphflow.analysis.hyphens import hyphen_hint
 from graphflow.analysis.mistakes import rclpy_source
 from graphflow.analysis.rclpy_check import files_in, findings_in, unfollowed_in
+from graphflow.analysis.uncalled import named_only
 from graphflow.cli import exits, output
 from graphflow.errors import Place, Problem, UsageFault
 from graphflow.graph.checks.check import check
@@ -51,7 +52,8 @@ def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
                 found.problems += wrong
                 found.slips += slips
                 found.ways += ways
-    if not (found.nodes or found.is_rclpy or found.problems):
+    has_files = any(path.is_file() for path in paths)
+    if not (found.nodes or found.is_rclpy or found.problems or has_files):
         raise UsageFault(f"{' '.join(map(str, paths))}: no nodes, of graphflow or of rclpy{_graphs_in(paths)}")
     _report(paths, found, as_json=as_json)
     if found.problems:
@@ -92,7 +94,7 @@ def _unreadable(file: Path) -> Problem | None:
 def rclpy_remarks(file: Path) -> list[str]:
     """Return the remarks on source that is written for rclpy, and is not run."""
     module = ast.parse(found_text(file))
-    found = sorted({*rclpy_source.slips(module), *rclpy_source.foreseen(module)})
+    found = sorted({*rclpy_source.slips(module), *rclpy_source.foreseen(module), *named_only(module)})
     return [f"{Place(shown(file), line)}: {text}" for line, text in found]
 
 

@@ -160,7 +160,7 @@ def types(package: str | None, as_json: bool) -> None:
     """List the plugins of the ROS packages that come with graphflow. Any class of a project can be loaded, too."""
     packages = {known for known, _ in EXECUTABLES}
     if package is not None and package not in packages:
-        raise UsageFault(f"there is no package {package!r} here{did_you_mean(package, packages)}")
+        raise UsageFault(f"no plugin of a package {package!r} comes with graphflow{did_you_mean(package, packages)}")
     shown = [package] if package else sorted(packages)
     if as_json:
         output.as_json({known: [name for of, name in EXECUTABLES if of == known] for known in shown})

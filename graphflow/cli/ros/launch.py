@@ -92,7 +92,7 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     from graphflow.workspace.executables import of_ros, package_share
     from graphflow.workspace.packages import find_workspace
     from graphflow.workspace.project import demos_root, project_root
-    from graphflow.workspace.unfound import uninstalled_launch_files, why_no_package
+    from graphflow.workspace.unfound import uninstalled_files, why_no_package
 
     first, *rest = words
     if not rest or ":=" in rest[0] or Path(first).is_file():
@@ -115,9 +115,12 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0])]
     if not found:
-        raise UsageFault(f"{first} has no file {rest[0]!r}{did_you_mean(rest[0], _launch_files(files))}")
+        known = _launch_files(files)
+        begun = [name for name in known if name.startswith(f"{rest[0]}.")]
+        near = f"; did you mean {begun[0]!r}?" if begun else did_you_mean(rest[0], known)
+        raise UsageFault(f"{first} has no file {rest[0]!r}{near}")
     own = find_workspace(Path.cwd()).packages.get(first)
-    if own is not None and (lacks := uninstalled_launch_files(own)):
+    if own is not None and (lacks := uninstalled_files(own)):
         output.talk(f"note: {lacks}")
     return str(found[0]), rest[1:]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from graphflow.cli import exits, output
+from graphflow.names import did_you_mean
 
 if TYPE_CHECKING:
     from graphflow.workspace.packages import Package, Workspace
@@ -99,6 +101,12 @@ def _unbuilt_interfaces(package: Package) -> str:
     from graphflow.workspace.packages import cmake_text
 
     cmake = cmake_text(package)
+    listed = re.findall(r"\b((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b", cmake)
+    for file in listed:
+        if not (package.folder / file).is_file():
+            there = [f"{name}.{name.partition('/')[0]}" for name in _interfaces_of(package)]
+            near = did_you_mean(file, [name for name in there if name not in listed])
+            return f"{package.folder / 'CMakeLists.txt'}: {file} is listed and does not exist{near}"
     files = [f"{name}.{name.partition('/')[0]}" for name in _interfaces_of(package)]
     unbuilt = [f'"{file}"' for file in files if file not in cmake]
     if not cmake or not unbuilt or "GLOB" in cmake:

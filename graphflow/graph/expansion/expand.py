@@ -269,6 +269,8 @@ class Expansion:
         self._body(bodies, inner)
         if "namespace" in settings.entries and self._relative == before and inner.namespace != scope.namespace:
             text = "every name in this group begins with a slash, so the namespace has no effect; leave the slashes out"
+            if not bodies:
+                text = "a namespace holds for the actions that follow it; put it before them"
             self._problems.add_unless_ros(settings.entries["namespace"].place, text)
 
     def _for(self, block: Item, scope: Scope) -> None:

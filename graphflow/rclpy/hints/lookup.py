@@ -12,6 +12,7 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from types import FrameType
+from typing import Any
 
 from graphflow.analysis.hiding import hidden
 from graphflow.analysis.mistakes.calls.called_early import results_passed
@@ -86,6 +87,11 @@ def _attribute(error: BaseException, frames: list[FrameType]) -> str:
     for known, sentence in ATTRIBUTES.items():
         if not set(words).isdisjoint(known.split()):
             return sentence
+    msg_type: Any = getattr(thing, "__dict__", {}).get("msg_type")
+    is_publisher = type(thing).__name__ == "Publisher" and not is_defined_by_user(type(thing))
+    if is_publisher and name in [field.name for field in msg_type.SCHEMA.fields]:
+        kind = msg_type.__name__
+        return f"that is the publisher: fill a message, msg = {kind}(), msg.{name} = ..., and publish(msg)"
     if isinstance(thing, list) and thing and type(thing[0]).__name__ == "Parameter":
         return f"that is a list of parameters: for parameter in parameters, and parameter.{name}"
     if thing is None and ".result()" in line_of(frames):

@@ -10,6 +10,7 @@ import pytest
 from graphflow.cli import exits
 from graphflow.cli.graphs.ros_files import check_parameters, check_setup, is_parameters
 from graphflow.errors import UsageFault
+from tests.conftest import Machine
 
 PARAMETERS = "/talker:\n  ros__parameters:\n    rate: 2.0\n"
 MANIFEST = '<package format="3"><name>lamp</name></package>'
@@ -24,6 +25,13 @@ SETUP = "from setuptools import setup\nsetup(entry_points={{'console_scripts': [
         ("/**:\n    'ros__parameters': {rate: 1.0}\n", True),
         (f"nodes:\n  {PARAMETERS}", False),
         ("nodes: {}\n", False),
+        ("talker:\n  rate: 1.0\n", True),
+        ("rate: 1.0\n", True),
+        ("node: {}\n", False),
+        ("node:\n  a: 1\n", False),
+        ("talker:\n  lamp: {class: x:Y}\n", False),
+        ("- a\n", False),
+        ("a: [\n", False),
         ("", False),
     ],
 )
@@ -79,3 +87,23 @@ def test_a_setup_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     [problem] = json.loads(capsys.readouterr().out)["problems"]
     assert (problem["file"], problem["line"]) == (str(file), 2)
     assert problem["message"].startswith("on is lamp.on:main, and there is no ")
+
+
+@pytest.mark.parametrize(
+    ("file", "told"),
+    [
+        ("lamps/msg/Light.msg", "graphflow interface show lamps/msg/Light reads it; graphflow ws checks all"),
+        ("lamps/CMakeLists.txt", "is part of a package: graphflow ws checks those of the workspace"),
+    ],
+)
+def test_other_files_of_a_package(machine: Machine, tmp_path: Path, file: str, told: str) -> None:
+    """They are no graph files; another command checks them."""
+    (tmp_path / file).parent.mkdir(parents=True)
+    (tmp_path / file).write_text("bool on\n")
+    assert told in machine.look("check", file, cwd=tmp_path, code=exits.USAGE)
+
+
+def test_source_without_nodes(machine: Machine, tmp_path: Path) -> None:
+    """A module of helpers is no mistake."""
+    (tmp_path / "pid.py").write_text("def limit(x):\n    return min(x, 1.0)\n")
+    assert machine.look("check", "pid.py", cwd=tmp_path) == "pid.py: no deadlocks visible in the source\n"

@@ -159,6 +159,9 @@ def test_interfaces_that_cmake_does_not_name(machine: Machine, workspace: Path) 
     told = machine.look("ws", cwd=workspace, code=None)
     assert f"{cmake}: some interfaces are missing, so that ROS 2 would not build them; add to rosidl" in told
     assert '"msg/Dark.msg"' in told
+    cmake.write_text('rosidl_generate_interfaces(${PROJECT_NAME}\n  "msg/Light.msg"\n  "msg/Drak.msg"\n)\n')
+    told = machine.look("ws", cwd=workspace, code=None)
+    assert f"{cmake}: msg/Drak.msg is listed and does not exist; did you mean 'msg/Dark.msg'?" in told
     cmake.write_text("file(GLOB messages msg/*.msg)\n")
     assert "would not build" not in machine.look("ws", cwd=workspace, code=None)
 

@@ -13,6 +13,7 @@ from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 
 _CALLED_BACK = {"create_timer": "timer", "create_subscription": "subscription"}
+_SHOWING = ("print", "debug", "info", "warn", "warning", "error")
 _KINDS = {**_CALLED_BACK, "timer": "timer", "subscription": "subscription"}
 
 
@@ -34,17 +35,31 @@ def _locals(cls: ast.ClassDef) -> Iterator[tuple[int, str]]:
     set_ = {node.attr for node in own if isinstance(node.ctx, ast.Store)}
     targets = [target for s in cls.body if isinstance(s, ast.Assign) for target in s.targets]
     set_ |= {target.id for target in targets if isinstance(target, ast.Name)}
-    for method in cls.body:
-        if isinstance(method, FunctionNode):
-            yield from _unread(method, read & set_) if read & set_ else ()
+    methods = [item for item in cls.body if isinstance(item, FunctionNode)]
+    later = {n.attr for m in methods if m.name != "__init__" for n in nodes_in(m) if is_own(n) and _is_set(n)}
+    for method in methods:
+        yield from _unread(method, read & set_, later) if read & set_ else ()
 
 
-def _unread(method: FunctionNode, attributes: set[str]) -> Iterator[tuple[int, str]]:
+def _is_set(attribute: ast.Attribute) -> bool:
+    return not isinstance(attribute.ctx, ast.Load)
+
+
+def _unread(method: FunctionNode, attributes: set[str], later: set[str]) -> Iterator[tuple[int, str]]:
+    """Find such variables in a method.
+
+    Args:
+        later: The attributes that are set after the constructor. Without that a log or a print does not count as a
+            reader of the local variable.
+    """
     known = {argument.arg for argument in nodes_in(method.args) if isinstance(argument, ast.arg)}
-    for node in nodes_in(method):
+    shown: set[str] = set()
+    for node, parents in walk(method):
         match node:
             case ast.Name(id="locals" | "vars" | "eval" | "exec"):
                 return
+            case ast.Name(id=name, ctx=ast.Load()) if name not in later and any(map(_is_shown, parents)):
+                shown.add(name)
             case ast.Name(id=name, ctx=ast.Load() | ast.Del()):
                 known.add(name)
             case ast.Global(names=names) | ast.Nonlocal(names=names):
@@ -59,8 +74,16 @@ def _unread(method: FunctionNode, attributes: set[str]) -> Iterator[tuple[int, s
                 ast.Assign(targets=[ast.Name(id=name)], value=value)
                 | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value)
             ) if name in attributes - known and _is_pure(value) and ast.unparse(value) != f"self.{name}":
-                text = f"{name} = {ast.unparse(value)}"
-                yield node.lineno, f"{text} sets a local variable, which nothing reads; write self.{text}"
+                text, reader = (
+                    f"{name} = {ast.unparse(value)}",
+                    "only a log reads" if name in shown else "nothing reads",
+                )
+                yield node.lineno, f"{text} sets a local variable, which {reader}; write self.{text}"
+
+
+def _is_shown(parent: ast.AST) -> bool:
+    """Whether a part of the source shows what is inside it, to people only."""
+    return isinstance(parent, ast.Call) and last_name(parent.func) in _SHOWING
 
 
 def _is_pure(value: ast.expr) -> bool:

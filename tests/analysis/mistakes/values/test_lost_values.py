@@ -52,6 +52,11 @@ def _told(source: str, line: str) -> list[str]:
     [
         (NATIVE, "state = 'BACK'", LOCAL.format("state = 'BACK'")),
         (NATIVE, "if self.state: state = 'A' if x.y else 'B'", LOCAL.format("state = 'A' if x.y else 'B'")),
+        (
+            NATIVE,
+            "state = 'BACK'\n        self.log.info(f'now {{state}}')",
+            LOCAL.format("state = 'BACK'").replace("nothing reads", "only a log reads"),
+        ),
         (RCLPY, "scan = message", LOCAL.format("scan = message")),
         (
             NATIVE,

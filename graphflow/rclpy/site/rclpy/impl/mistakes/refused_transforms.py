@@ -35,6 +35,8 @@ def check(transform: TransformStamped) -> None:
     if place not in _reported:
         _reported.add(place)
         wrong, way = fault
+        own = next((name for name, thing in caller.f_locals.items() if thing is transform), "transform")
+        way = way.replace("transform.", f"{own}.")
         logger.warning("%s: %s, and every listener drops it; %s", place, wrong, way)
 
 

@@ -50,8 +50,9 @@ class Unstamped:
         place = short_place(caller.f_code.co_filename, caller.f_lineno)
         if place not in _reported:
             _reported.add(place)
+            name = next((name for name, thing in caller.f_locals.items() if thing is transform), "transform")
             logger.warning(
                 "%s: the transforms of %r have no stamp, so that listeners take all of them for the same moment; write "
-                "transform.header.stamp = self.get_clock().now().to_msg() before",
-                *(place, frame),
+                "%s.header.stamp = self.get_clock().now().to_msg() before",
+                *(place, frame, name),
             )

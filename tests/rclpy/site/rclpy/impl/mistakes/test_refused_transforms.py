@@ -29,9 +29,9 @@ def test_names_of_frames(node: Node, caplog: pytest.LogCaptureFixture) -> None:
     line = test_names_of_frames.__code__.co_firstlineno + 8
     assert [message for r in caplog.records if REFUSED in (message := r.getMessage())] == [
         f"test_refused_transforms.py:{line}: this transform has no child_frame_id, {REFUSED}; write "
-        "transform.child_frame_id = 'base_link' before",
+        "half.child_frame_id = 'base_link' before",
         f"test_refused_transforms.py:{line + 1}: this transform has no header.frame_id, {REFUSED}; write "
-        "transform.header.frame_id = 'base_link' before",
+        "other.header.frame_id = 'base_link' before",
         f"test_refused_transforms.py:{line + 2}: this transform says where 'base' is in itself, {REFUSED}; "
         "child_frame_id is the frame that is placed in frame_id",
     ]
