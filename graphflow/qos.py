@@ -66,11 +66,7 @@ class Qos:
     def __post_init__(self) -> None:
         for name, kind in _POLICIES.items():
             if not isinstance(value := getattr(self, name), kind):
-                meant = str(value).upper() if isinstance(value, str) else ""
-                fits = next((kind_of for kind_of in (kind, *_POLICIES.values()) if meant in kind_of.__members__), None)
-                one = next(iter(kind)) if fits is None else fits[meant]
-                way = f"{type(one).__name__.lower()}={type(one).__name__}.{one.name}"
-                raise ValueError(f"{name} of a Qos cannot be {value!r}; write {way}")
+                raise ValueError(f"{name} of a Qos cannot be {value!r}; write {_policy_meant(value, kind)}")
         for name in ("depth", *_DURATIONS):
             value = getattr(self, name)
             if isinstance(value, IntEnum) and type(value) in _POLICIES.values():
@@ -115,6 +111,14 @@ class Qos:
         if self.durability is Durability.BEST_AVAILABLE:
             settled = replace(settled, durability=Durability.TRANSIENT_LOCAL if latched else Durability.VOLATILE)
         return settled
+
+
+def _policy_meant(value: object, kind: type[IntEnum]) -> str:
+    """Return the argument that was meant by a value that is none of its policies, such as a text."""
+    meant = value.upper() if isinstance(value, str) else ""
+    fits = next((policies for policies in (kind, *_POLICIES.values()) if meant in policies.__members__), None)
+    one = next(iter(kind)) if fits is None else fits[meant]
+    return f"{type(one).__name__.lower()}={type(one).__name__}.{one.name}"
 
 
 def incompatible(offered: Qos, requested: Qos) -> list[str]:

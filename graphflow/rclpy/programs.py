@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 from importlib import import_module
+from importlib.util import find_spec
 from inspect import isclass, isfunction
 from pathlib import Path
 from pkgutil import iter_modules
@@ -172,9 +173,9 @@ def _begin(program: Program) -> None:
         runpy.run_path(str(program.file), run_name="__main__")
         unrun.report(program.file)
         return
-    module = import_module(program.entry.module)
-    _note_other(program, module)
-    called: object = module
+    spec = find_spec(program.entry.module)
+    _note_other(program, None if spec is None else spec.origin)
+    called: object = import_module(program.entry.module)
     owner = called
     for part in program.entry.function.split("."):
         called, owner = getattr(called, part, None), called
@@ -188,11 +189,14 @@ def _begin(program: Program) -> None:
     sys.exit(called())
 
 
-def _note_other(program: Program, module: ModuleType) -> None:
-    """Note that what runs is another package's, whose module has the same name, or another package of that name."""
-    file = getattr(module, "__file__", None)
-    if file is not None and not program.file.samefile(file):
-        top = module.__name__.partition(".")[0]
+def _note_other(program: Program, file: str | None) -> None:
+    """Note that what runs is another package's, whose module has the same name, or another package of that name.
+
+    Args:
+        file: The file that will be imported for the program.
+    """
+    if program.entry is not None and file is not None and not program.file.samefile(file):
+        top = program.entry.module.partition(".")[0]
         text = f"this runs {file}, and not {program.file}: two packages have a folder {top} for their modules"
         sys.stderr.write(f"note: {text}; rename one, in its setup.py as well\n")
     for double in program.workspace.doubles:

@@ -179,11 +179,7 @@ def _member(package: str, line: str) -> Field | Constant:
     constant = re.match(r"(\w+)\s*=(?!=)\s*(.*)\Z", rest)
     if constant:
         return _constant(type_, constant.group(1), constant.group(2))
-    if (misplaced := re.match(r"(\w+)\s*(\[[^\]]*\])", rest)) and not type_.array:
-        brackets = misplaced[2].replace(" ", "")
-        raise InterfaceError(f"{line!r}: the brackets belong to the type: {type_text}{brackets} {misplaced[1]}")
-    if (value := re.fullmatch(r"([A-Z][A-Z0-9_]*)\s+(-?[\d.]+);?", rest)) is not None:
-        raise InterfaceError(f"{line!r}: a constant has a =: {type_text} {value[1]}={value[2]}")
+    _check_order(line, type_text, rest)
     name, *more = rest.split(None, 1)
     if more and more[0].startswith(_COMMENTS) and type_.base not in STRINGS:
         raise InterfaceError(f"{more[0]!r}: a comment begins with #")
@@ -193,6 +189,15 @@ def _member(package: str, line: str) -> Field | Constant:
         raise InterfaceError(f"field name {name!r}: the type comes first: {turned}")
     _check_field_name(name)
     return Field(name, type_, _literal(type_, more[0]) if more else None)
+
+
+def _check_order(line: str, type_text: str, rest: str) -> None:
+    """Refuse brackets behind a name, as in C, and a constant without its sign."""
+    if (misplaced := re.match(r"(\w+)\s*(\[[^\]]*\])", rest)) and not type_text.endswith("]"):
+        brackets = misplaced[2].replace(" ", "")
+        raise InterfaceError(f"{line!r}: the brackets belong to the type: {type_text}{brackets} {misplaced[1]}")
+    if (value := re.fullmatch(r"([A-Z][A-Z0-9_]*)\s+(-?[\d.]+);?", rest)) is not None:
+        raise InterfaceError(f"{line!r}: a constant has a =: {type_text} {value[1]}={value[2]}")
 
 
 def _check_field_name(name: str) -> None:

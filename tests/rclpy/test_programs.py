@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
@@ -124,20 +123,16 @@ def test_another_package_with_the_same_modules(workspace: Path, capsys: pytest.C
     """What runs instead is named, and so is a copy of the package that is not used."""
     found = find_program("lamp", ["lamp"], workspace)
     assert found is not None
-    module = ModuleType("lamp.node")
-    module.__file__ = str(found.file)
-    _note_other(found, module)
+    _note_other(found, str(found.file))
     assert capsys.readouterr().err == ""
     copied = shutil.copytree(workspace / "src" / "lamp", workspace / "src" / "lamp_copy")
-    module.__file__ = str(copied / "lamp" / "node.py")
+    other = copied / "lamp" / "node.py"
     found = find_program("lamp", ["lamp"], workspace)
     assert found is not None
-    _note_other(found, module)
+    _note_other(found, str(other))
     first, second = capsys.readouterr().err.splitlines()
-    assert first.startswith(f"note: this runs {module.__file__}, and not {found.file}: two packages have a folder lamp")
-    assert second.startswith(
-        f"note: {copied} is not used, since {workspace / 'src' / 'lamp'} is called 'lamp', too; ren"
-    )
+    assert first.startswith(f"note: this runs {other}, and not {found.file}: two packages have a folder lamp for")
+    assert second.startswith(f"note: {copied} is not used, since {workspace}/src/lamp is called 'lamp', too; rename ")
 
 
 def start(workspace: Path, *words: str) -> subprocess.Popen[str]:

@@ -264,7 +264,7 @@ def check(graph: str, args: tuple[str, ...], as_json: bool) -> int:
         if things
     ]
     more = ", ".join(counts) or "no problems"
-    more += f", {_count(unread, 'unread program')}" if unread else ""
+    more += f", {_count(unread, 'program')} not checked" if unread else ""
     output.data(f"{path}: {_count(resolved.nodes, 'node')}, {_count(resolved.steps, 'step')}, {more}")
     return exits.FAILED if certain else exits.OK
 

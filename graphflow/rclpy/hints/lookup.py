@@ -87,11 +87,6 @@ def _attribute(error: BaseException, frames: list[FrameType]) -> str:
     for known, sentence in ATTRIBUTES.items():
         if not set(words).isdisjoint(known.split()):
             return sentence
-    msg_type: Any = getattr(thing, "__dict__", {}).get("msg_type")
-    is_publisher = type(thing).__name__ == "Publisher" and not is_defined_by_user(type(thing))
-    if is_publisher and name in [field.name for field in msg_type.SCHEMA.fields]:
-        kind = msg_type.__name__
-        return f"that is the publisher: fill a message, msg = {kind}(), msg.{name} = ..., and publish(msg)"
     if isinstance(thing, list) and thing and type(thing[0]).__name__ == "Parameter":
         return f"that is a list of parameters: for parameter in parameters, and parameter.{name}"
     if thing is None and ".result()" in line_of(frames):
@@ -106,6 +101,18 @@ def _attribute(error: BaseException, frames: list[FrameType]) -> str:
         near = nearest(name, [word for word in dir(thing) if not word.startswith("_")])
         return f"did you mean {near!r}?" if near is not None else ""
     return ""
+
+
+def _of_publisher(error: BaseException, frames: list[FrameType]) -> str:
+    """Show how to fill a message where its field was read or set on the publisher."""
+    found = lacking(error, frames)
+    if found is None or type(found[0]).__name__ != "Publisher" or is_defined_by_user(type(found[0])):
+        return ""
+    msg_type: Any = vars(found[0])["msg_type"]
+    if found[1] not in [field.name for field in msg_type.SCHEMA.fields]:
+        return ""
+    way = f"fill a message, msg = {msg_type.__name__}(), msg.{found[1]} = ..., and publish(msg)"
+    return f"that is the publisher: {way}"
 
 
 def _of_goal(cls: type, name: str) -> str:
@@ -161,6 +168,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     timer_info,
     wrong_value,
     no_message,
+    _of_publisher,
     _attribute,
     missing_name,
     unknown_name,

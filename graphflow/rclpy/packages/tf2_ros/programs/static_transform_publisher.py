@@ -27,6 +27,12 @@ METRES, TURNS, PARTS = ("x", "y", "z"), ("roll", "pitch", "yaw"), ("qx", "qy", "
 """The numeric options: a translation, and a rotation in radians or as a quaternion."""
 
 
+_FORMS = (
+    "the old form is X Y Z YAW PITCH ROLL PARENT CHILD, or X Y Z QX QY QZ QW PARENT CHILD; the new one names what is "
+    "not 0: --z 0.2 --frame-id base_link --child-frame-id laser"
+)
+
+
 class StaticTransformPublisher(Node):
     """Publishes one transform for as long as it runs; its parameters define it, and are read-only."""
 
@@ -98,12 +104,9 @@ def parsed(words: Sequence[str]) -> tuple[Pose, str, str]:
         )
         options = (*METRES, *(reversed(TURNS) if len(words) == 8 else PARTS), "frame-id", "child-frame-id")
         words = [f"--{option}={word}" for option, word in zip(options, words, strict=True)]
-    if words and not words[0].startswith("-"):
-        parser.error(
-            "the old form is X Y Z YAW PITCH ROLL PARENT CHILD, or X Y Z QX QY QZ QW PARENT CHILD; the new one "
-            "names what is not 0: --z 0.2 --frame-id base_link --child-frame-id laser"
-        )
-    found = parser.parse_args(_with_values(words))
+    found, others = parser.parse_known_args(_with_values(words))
+    if others:
+        parser.error(f"unrecognized arguments: {' '.join(others)}; {_FORMS}")
     if not found.frame_id or not found.child_frame_id:
         parser.error("--frame-id and --child-frame-id are required")
     turns, parts = ([getattr(found, name) for name in names] for names in (TURNS, PARTS))
