@@ -370,17 +370,13 @@ def truth(value: object, file: str) -> bool:
     Raises:
         SubstitutionError: The value is neither true nor false.
     """
-    words = {"true": True, "1": True, "false": False, "0": False}
-    if isinstance(value, (bool, int)) and value in (0, 1):
-        return bool(value)
-    if isinstance(value, str) and value.strip().lower() in words:
-        return words[value.strip().lower()]
-    compared = re.fullmatch(r"(true|false) *== *(true|false)", str(value).strip().lower())
-    if compared is not None:
-        text = "a comparison is not made here"
+    words, word = {"true": True, "1": True, "false": False, "0": False}, str(value).strip().lower()
+    if isinstance(value, (bool, int, str)) and word in words:
+        return words[word]
+    if re.fullmatch(r"(true|false) *== *(true|false)", word):
         way = "the argument alone is the condition: if: $(var NAME), or unless: $(var NAME)"
-        raise SubstitutionError(f"{text}: {way}")
-    meant = _TRUTHS.get(str(value).strip().lower())
+        raise SubstitutionError(f"a comparison is not made here: {way}")
+    meant = _TRUTHS.get(word)
     compare = "EqualsSubstitution(..., 'text')" if file.endswith(".py") else "$(eval NAME == 'text')"
     way = f"write {meant!r}" if meant is not None else f"compare with {compare}"
     if meant is None and isinstance(value, str) and value.isidentifier():

@@ -46,7 +46,7 @@ def test_programs_of_a_graph(machine: Machine, tmp_path: Path) -> None:
     (tmp_path / "g.yaml").write_text(GRAPH)
     text = machine.look("check", "g.yaml", cwd=tmp_path)
     assert text.count("node.py:11: self.timer.cancel without parentheses calls nothing") == 1
-    assert text.endswith("g.yaml: 3 nodes, 0 steps, 1 remark, 1 unread program\n")
+    assert text.endswith("g.yaml: 3 nodes, 0 steps, 1 remark, 1 program not checked\n")
     assert json.loads(machine.look("check", "--json", "g.yaml", cwd=tmp_path))["unread"] == ["/clock"]
     (package / "lamp" / "node.py").write_text(LAMP.replace("cancel", "cancel()"))
-    assert machine.look("check", "g.yaml", cwd=tmp_path).endswith("0 steps, no problems, 1 unread program\n")
+    assert machine.look("check", "g.yaml", cwd=tmp_path).endswith("0 steps, no problems, 1 program not checked\n")
