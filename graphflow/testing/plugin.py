@@ -14,7 +14,7 @@ import linecache
 import re
 import sys
 import time
-from collections.abc import Callable, Coroutine, Generator, Iterator
+from collections.abc import AsyncGenerator, Callable, Coroutine, Generator, Iterator
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -59,6 +59,40 @@ def graph(graphflow_runner: asyncio.Runner) -> Iterator[Graph]:
     yield made
     if made.loop in (None, graphflow_runner.get_loop()):  # in another plugin's loop, the test has closed it
         graphflow_runner.run(made.close())
+
+
+@pytest.hookimpl(wrapper=True, trylast=True)  # within those of other plugins, which may have made it synchronous
+def pytest_fixture_setup(fixturedef: Any, request: pytest.FixtureRequest) -> Generator[None, object, object]:
+    """Run an `async def` fixture of a test that uses `graph` in the test's event loop, unless another plugin does."""
+    made, names = fixturedef.func, request.fixturenames
+    is_generator = inspect.isasyncgenfunction(made)
+    is_ours = "graphflow_runner" in names and "anyio_backend" not in names
+    if not is_ours or not (is_generator or inspect.iscoroutinefunction(made)):
+        return (yield)
+    runner: asyncio.Runner = request.getfixturevalue("graphflow_runner")
+
+    @functools.wraps(made)
+    def run(*args: object, **kwargs: object) -> object:
+        if not is_generator:
+            return runner.run(made(*args, **kwargs))
+        steps = made(*args, **kwargs)
+        request.addfinalizer(lambda: runner.run(_rest_of(steps)))
+        return runner.run(_next_of(steps))
+
+    fixturedef.func = run
+    try:
+        return (yield)
+    finally:
+        fixturedef.func = made
+
+
+async def _next_of(steps: AsyncGenerator[object, None]) -> object:
+    return await anext(steps)
+
+
+async def _rest_of(steps: AsyncGenerator[object, None]) -> None:
+    async for _ in steps:
+        pytest.fail("an async fixture yields once", pytrace=False)
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

@@ -179,6 +179,59 @@ def test_tests_that_would_pass_in_vain(pytester: pytest.Pytester) -> None:
     assert reports.count("has no effect until it is awaited") == 4
 
 
+def test_asynchronous_fixtures(pytester: pytest.Pytester) -> None:
+    """They run in the test's event loop, for each test anew; what follows a `yield` runs at the end."""
+    result = run(
+        pytester,
+        """
+        import pytest
+        from counter import Counter
+
+        ended = []
+
+        @pytest.fixture
+        async def counter(graph):
+            node = Counter()
+            await graph.start(node)
+            return node
+
+        @pytest.fixture
+        async def second(graph, counter):
+            yield graph.make(Counter, "second")
+            await graph.clock.advance(1.0)
+            ended.append(counter.count)
+
+        @pytest.mark.parametrize("seconds", [1, 2])
+        async def test_counts(graph, counter, second, seconds):
+            await graph.start(second)
+            await graph.clock.advance(float(seconds))
+            assert counter.count == second.count == seconds
+
+        def test_the_ends():
+            assert ended == [2, 3]
+
+        class TestOfClasses:
+            @pytest.fixture
+            async def own(self, counter):
+                return counter
+
+            async def test_own(self, graph, own):
+                assert own.is_running
+
+        @pytest.fixture
+        async def twice(graph):
+            yield 1
+            yield 2
+
+        async def test_twice(twice):
+            pass
+        """,
+    )
+
+    result.assert_outcomes(passed=5, errors=1)
+    result.stdout.fnmatch_lines(["an async fixture yields once"])
+
+
 def test_a_node_that_is_not_started(pytester: pytest.Pytester) -> None:
     """It may be why a test fails, although nothing else runs either."""
     result = run(
