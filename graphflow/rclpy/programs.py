@@ -121,6 +121,8 @@ def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] |
     if fault is not None:
         raise UsageFault(fault)
     entry = package.entry_points.get(known)
+    if entry is not None and known != name:
+        sys.stderr.write(f"note: the executable is called {known}; ROS 2 finds no {name}\n")
     return (package.programs[known], None) if entry is None else (package.file_of(entry), entry)
 
 

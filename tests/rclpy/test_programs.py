@@ -97,6 +97,14 @@ def test_a_program_is_a_file_or_an_executable_of_a_package(workspace: Path) -> N
         assert find_program(what, words, workspace) is None
 
 
+def test_an_executable_with_a_suffix(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is found, and the name that ROS 2 takes is noted."""
+    found = find_program("lamp", ["lamp.py"], workspace)
+    assert found is not None
+    assert found.entry == ("lamp.node", "main")
+    assert capsys.readouterr().err == "note: the executable is called lamp; ROS 2 finds no lamp.py\n"
+
+
 def test_what_a_package_has_not_is_told(workspace: Path) -> None:
     """With what it has; and what it says it has."""
     with pytest.raises(UsageFault, match="'lamp' has no executable 'lmap'; did you mean 'lamp'"):
