@@ -374,8 +374,8 @@ def truth(value: object, file: str) -> bool:
     if isinstance(value, (bool, int, str)) and word in words:
         return words[word]
     if re.fullmatch(r"(true|false) *== *(true|false)", word):
-        way = "the argument alone is the condition: if: $(var NAME), or unless: $(var NAME)"
-        raise SubstitutionError(f"a comparison is not made here: {way}")
+        alone = "IfCondition(LaunchConfiguration(NAME))" if file.endswith(".py") else "if: $(var NAME)"
+        raise SubstitutionError(f"a comparison is not made here; the argument alone is the condition: {alone}")
     meant = _TRUTHS.get(word)
     compare = "EqualsSubstitution(..., 'text')" if file.endswith(".py") else "$(eval NAME == 'text')"
     way = f"write {meant!r}" if meant is not None else f"compare with {compare}"

@@ -112,7 +112,7 @@ class ContextState:
 
     def interrupt(self) -> bool:
         """End the context because of a signal; return whether it was still running. Signal-safe."""
-        self.was_interrupted = self.is_ok
+        self.was_interrupted |= self.is_ok
         return self.end()
 
     def end(self) -> bool:

@@ -21,6 +21,7 @@ from graphflow.executor.ledger import Ledger
 from graphflow.executor.runner import Runner
 from graphflow.interface import CALL_TIMEOUT, DeadlockPolicy
 from graphflow.machines.cache import GraphCache, GraphChange
+from graphflow.names import nearest
 from graphflow.runtime.actions.goal_reasons import Reasons
 from graphflow.runtime.callables import name_of
 from graphflow.runtime.endpoints.direct_calls import Switchboard
@@ -62,9 +63,9 @@ class Context(AttributeHints):
     """
 
     def _hint(self, name: str) -> str:
-        return (
-            "running(...) gives the process's context: name the node before, node = Talker(), and enter running(node)"
-        )
+        if nearest(name, [word for word in dir(self) if not word.startswith("_")], cutoff=0.75) is not None:
+            return ""  # a misspelt attribute
+        return "running(...) gives a context: make the node before, node = Talker(), and enter running(node)"
 
     def __init__(
         self,

@@ -45,7 +45,7 @@ class NodesByName(dict[str, Node]):
 
     def __missing__(self, name: str) -> Node:
         """Raise KeyError with the names that there are."""
-        raise KeyError(f"no node {name!r} has been started{did_you_mean(name, self)}")
+        raise KeyError(f"no node {name!r} has been started{did_you_mean(str(name), self)}")
 
 
 class PlanRun:

@@ -65,33 +65,58 @@ def graph(graphflow_runner: asyncio.Runner) -> Iterator[Graph]:
 def pytest_fixture_setup(fixturedef: Any, request: pytest.FixtureRequest) -> Generator[None, object, object]:
     """Run an `async def` fixture of a test that uses `graph` in the test's event loop, unless another plugin does."""
     made, names = fixturedef.func, request.fixturenames
-    is_generator = inspect.isasyncgenfunction(made)
-    is_ours = "graphflow_runner" in names and "anyio_backend" not in names
-    if not is_ours or not (is_generator or inspect.iscoroutinefunction(made)):
+    is_asynchronous = inspect.isasyncgenfunction(made) or inspect.iscoroutinefunction(made)
+    if not is_asynchronous or "graphflow_runner" not in names or "anyio_backend" in names:
         return (yield)
-    runner: asyncio.Runner = request.getfixturevalue("graphflow_runner")
-
-    @functools.wraps(made)
-    def run(*args: object, **kwargs: object) -> object:
-        if not is_generator:
-            return runner.run(made(*args, **kwargs))
-        steps = made(*args, **kwargs)
-        request.addfinalizer(lambda: runner.run(_rest_of(steps)))
-        return runner.run(_next_of(steps))
-
-    fixturedef.func = run
+    fixturedef.func = (
+        _synchronous(fixturedef, request) if fixturedef.scope == "function" else _too_long_lived(fixturedef)
+    )
     try:
         return (yield)
     finally:
         fixturedef.func = made
 
 
-async def _next_of(steps: AsyncGenerator[object, None]) -> object:
-    return await anext(steps)
+def _synchronous(fixturedef: Any, request: pytest.FixtureRequest) -> Callable[..., object]:
+    """Return a function that runs an asynchronous fixture in its test's event loop."""
+    made, instance = fixturedef.func, request.instance
+    if inspect.ismethod(made) and isinstance(instance, type(made.__self__)):
+        made = made.__func__.__get__(instance)  # as pytest does, since each test has an instance of its own
+    runner: asyncio.Runner = request.getfixturevalue("graphflow_runner")
+
+    @functools.wraps(made)
+    def run(*args: object, **kwargs: object) -> object:
+        if not inspect.isasyncgenfunction(made):
+            return runner.run(made(*args, **kwargs))
+        steps = made(*args, **kwargs)
+        request.addfinalizer(lambda: runner.run(_end_of(steps)))
+        return runner.run(_start_of(steps))
+
+    return run
 
 
-async def _rest_of(steps: AsyncGenerator[object, None]) -> None:
+def _too_long_lived(fixturedef: Any) -> Callable[..., object]:
+    """Return a function that refuses an asynchronous fixture of a scope longer than a test's event loop."""
+
+    @functools.wraps(fixturedef.func)
+    def refuse(*_: object, **__: object) -> object:
+        text = (
+            f"the fixture {fixturedef.argname!r} is asynchronous, and runs in a test's event loop: leave out its scope"
+        )
+        pytest.fail(text, pytrace=False)
+
+    return refuse
+
+
+async def _start_of(steps: AsyncGenerator[object, None]) -> object:
+    async for value in steps:
+        return value
+    pytest.fail("an async fixture has ended without a yield", pytrace=False)
+
+
+async def _end_of(steps: AsyncGenerator[object, None]) -> None:
     async for _ in steps:
+        await steps.aclose()
         pytest.fail("an async fixture yields once", pytrace=False)
 
 

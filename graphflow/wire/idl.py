@@ -193,10 +193,11 @@ def _member(package: str, line: str) -> Field | Constant:
 
 def _check_order(line: str, type_text: str, rest: str) -> None:
     """Refuse brackets behind a name, as in C, and a constant without its sign."""
-    if (misplaced := re.match(r"(\w+)\s*(\[[^\]]*\])", rest)) and not type_text.endswith("]"):
+    misplaced = re.match(r"(\w+)\s*(\[\s*(?:<=)?\d*\s*\])", rest)
+    if misplaced is not None and not type_text.endswith("]") and not type_text.startswith(tuple(STRINGS)):
         brackets = misplaced[2].replace(" ", "")
         raise InterfaceError(f"{line!r}: the brackets belong to the type: {type_text}{brackets} {misplaced[1]}")
-    if (value := re.fullmatch(r"([A-Z][A-Z0-9_]*)\s+(-?[\d.]+);?", rest)) is not None:
+    if (value := re.fullmatch(r"([A-Z][A-Z0-9_]*)\s+(-?[\d.]+);?\s*(?:#.*)?", rest)) is not None:
         raise InterfaceError(f"{line!r}: a constant has a =: {type_text} {value[1]}={value[2]}")
 
 

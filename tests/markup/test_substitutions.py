@@ -287,8 +287,10 @@ def test_no_place_for_a_copy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 @pytest.mark.parametrize("value", ["true == true", "False==true"])
 def test_a_comparison_as_a_condition(value: str) -> None:
     """Nothing compares it: the argument alone is the condition."""
-    with pytest.raises(SubstitutionError, match=r"is not made here: .* if: \$\(var NAME\), or unless: \$\(var NAME\)"):
+    with pytest.raises(SubstitutionError, match=r"is not made here; .* is the condition: if: \$\(var NAME\)$"):
         truth(value, "a.yaml")
+    with pytest.raises(SubstitutionError, match=r"the condition: IfCondition\(LaunchConfiguration\(NAME\)\)$"):
+        truth(value, "a.launch.py")
 
 
 ARGUMENT = "to use the argument of that name write"

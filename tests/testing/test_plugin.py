@@ -213,23 +213,60 @@ def test_asynchronous_fixtures(pytester: pytest.Pytester) -> None:
         class TestOfClasses:
             @pytest.fixture
             async def own(self, counter):
+                self.counter = counter
                 return counter
 
             async def test_own(self, graph, own):
-                assert own.is_running
-
-        @pytest.fixture
-        async def twice(graph):
-            yield 1
-            yield 2
-
-        async def test_twice(twice):
-            pass
+                assert own.is_running and self.counter is own
         """,
     )
 
-    result.assert_outcomes(passed=5, errors=1)
-    result.stdout.fnmatch_lines(["an async fixture yields once"])
+    result.assert_outcomes(passed=4)
+
+
+def test_asynchronous_fixtures_with_mistakes(pytester: pytest.Pytester) -> None:
+    """A second `yield`, none, and a longer scope are told."""
+    result = run(
+        pytester,
+        """
+        import pytest
+
+        ended = []
+
+        @pytest.fixture
+        async def twice(graph):
+            try:
+                yield 1
+                yield 2
+            finally:
+                ended.append("twice")
+
+        @pytest.fixture
+        async def never(graph):
+            if graph is None:
+                yield 1
+
+        @pytest.fixture(scope="module")
+        async def long():
+            return 1
+
+        async def test_twice(twice): ...
+
+        async def test_never(never): ...
+
+        @pytest.mark.parametrize("n", [1, 2])
+        async def test_long(graph, long, n): ...
+
+        def test_the_end():
+            assert ended == ["twice"]
+        """,
+    )
+
+    result.assert_outcomes(passed=2, errors=4)
+    told = result.stdout.str().partition("short test summary info")[0]
+    assert told.count("an async fixture yields once") == 1
+    assert told.count("an async fixture has ended without a yield") == 1
+    assert told.count("the fixture 'long' is asynchronous, and runs in a test's event loop: leave out its scope") == 2
 
 
 def test_a_node_that_is_not_started(pytester: pytest.Pytester) -> None:

@@ -104,6 +104,8 @@ def _of_number(target: str, given: str, value: object, kind: str) -> str:
     if isinstance(shape := getattr(value, "shape", None), tuple):
         return _of_array(target, given, kind, shape)
     if kind == "float" and isinstance(value, int):
+        if isinstance(value, bool):
+            return f"{target} is a float, and was given {value}"
         if given == "...":  # an argument of the message's constructor
             return f"write {target}={value}.0, or {target}=float(...)"
         return f"{target} is a float: write {value}.0" if given == str(value) else f"write {target} = float({given})"

@@ -172,10 +172,11 @@ def _unbound(name: str, frame: FrameType) -> str:
         return "write import rclpy"
     if way := _in_rclpy(name, "rclpy"):
         return way
-    for package in ("tf2_ros", "message_filters"):
-        if name in vars(import_module(package)):
-            return f"write from {package} import {name}"
     line = imports(name) or MODULES.get(name, "")
+    for package in ("tf2_ros", "message_filters"):
+        thing = vars(import_module(package)).get(name)
+        if not line and isinstance(thing, type) and thing.__module__.startswith(package):
+            line = f"from {package} import {name}"
     return f"write {line}" if line else ""
 
 

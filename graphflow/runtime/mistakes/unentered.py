@@ -41,7 +41,7 @@ class Unentered(AbstractAsyncContextManager[T]):
         def __enter__(self) -> NoReturn:
             self._is_known = True
             caller = sys._getframe(1).f_code
-            is_async = caller.co_flags & inspect.CO_COROUTINE
+            is_async = caller.co_flags & (inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR)
             where = "" if is_async else ", in an async def main(), which asyncio.run(main()) runs"
             raise TypeError(f"write {self._way}{where}")
 

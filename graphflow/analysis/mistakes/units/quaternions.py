@@ -44,14 +44,15 @@ def angles_as_quaternions(code: ast.AST) -> Iterator[tuple[int, str]]:
 
 def _text(target: str, part: str, value: ast.expr) -> str:
     angle = ast.unparse(value)
-    is_in_degrees = (
-        isinstance(value, ast.Constant) and isinstance(value.value, (int, float)) and value.value > _FULL_TURN
-    )
-    angle = f"math.radians({angle})" if is_in_degrees else angle
+    size = value.operand if isinstance(value, ast.UnaryOp) else value
+    number = size.value if isinstance(size, ast.Constant) else 0
+    if isinstance(number, (int, float)) and number > _FULL_TURN:
+        angle = f"math.radians({angle})"
     text = f"{target} is a part of a quaternion, not an angle"
     if part == "w":
         return f"{text}: it is math.cos(angle / 2)"
-    half = f"{angle} / 2" if isinstance(value, (ast.Name, ast.Attribute, ast.Constant)) else f"({angle}) / 2"
+    is_plain = isinstance(value, (ast.Name, ast.Attribute, ast.Constant)) or angle.startswith("math.radians(")
+    half = f"{angle} / 2" if is_plain else f"({angle}) / 2"
     return f"{text}: write math.sin({half}), and math.cos({half}) into w"
 
 

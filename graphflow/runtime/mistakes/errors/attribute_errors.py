@@ -72,7 +72,7 @@ def _hint_with_name(thing: AttributeHints, name: str, error: AttributeError) -> 
     line = linecache.getline(frame.f_code.co_filename, parts[-1].tb_lineno)
     owners = (path.rpartition(".") for path in _PATH.findall(line))
     named = (owner for owner, _, attribute in owners if attribute == name and named_in(frame, owner) is thing)
-    return hint.replace("IT", next(named, "it"))
+    return re.sub(r"\bIT\b", next(named, "it"), hint)
 
 
 def _of_transform(thing: object, name: str, error: AttributeError) -> str:

@@ -98,7 +98,7 @@ class _Site:
 def _options(given: dict[str, object]) -> dict[str, object]:
     """Return the options of a call that are not false. Raises TypeError for an unknown one, and for a wrong value."""
     found: dict[str, Any] = {}
-    if not isinstance(pause := given.get("throttle_duration_sec") or 0.0, (int, float)):
+    if isinstance(pause := given.get("throttle_duration_sec"), (str, bytes)):
         raise TypeError(f"throttle_duration_sec: expected a number of seconds, got {pause!r}")
     for name, words in _FILTERS.items():
         needed = [word for word, default in words.items() if default is None]

@@ -219,15 +219,20 @@ def _way_to_spin(level: Level, node: Node) -> str:
 def _polls(level: Level, node: Node) -> bool:
     """Whether code reads an attribute of a node again and again, to wait for one of its callbacks."""
     name = _name_of(level, node)
-    tests = [loop.test for loop in _loops(level) if isinstance(loop, ast.While)]
-    read = [part for test in tests for part in nodes_in(test) if isinstance(part, ast.Attribute)]
-    return any(isinstance(part.value, ast.Name) and part.value.id == name for part in read)
+    for loop in _loops(level):
+        parts = nodes_in(loop.test) if isinstance(loop, ast.While) else []
+        called = [inner for part in parts if isinstance(part, ast.Call) for inner in nodes_in(part.func)]
+        for part in parts:
+            match part:
+                case ast.Attribute(value=ast.Name(id=owner)) if owner == name and part not in called:
+                    return True
+    return False
 
 
 def _name_of(level: Level, node: Node) -> str:
     """Return the name of the variable that holds a node, as code would use it there."""
     users = [frame for frame in level.frames if is_users(frame.f_code.co_filename)]
-    held = ((name, thing) for frame in reversed(users) for name, thing in frame.f_locals.items())
+    held = ((name, thing) for frame in reversed(users) for name, thing in list(frame.f_locals.items()))
     return next((name for name, thing in held if thing is node), "node")
 
 
