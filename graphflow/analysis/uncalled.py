@@ -22,11 +22,11 @@ _ALSO_VALUES = ("start", "stop")
 """Methods whose names slices and ranges have for values, which a script may look at."""
 _HANDLERS = {"subscription", "service", "timer", "action", "task"}
 """Decorators that leave a method as it is."""
-_COUNTS = ("get_subscription_count", "get_publisher_count", "qsize")
+_COUNTS = ("get_subscription_count", "get_publisher_count")
 """Methods that return a number."""
 _QUESTIONS = (
     *("service_is_ready", "server_is_ready", "wait_for_service", "wait_for_server", "is_canceled"),
-    *("is_set", *_COUNTS),
+    *_COUNTS,
 )
 """Methods whose answer decides a condition."""
 _LAUNCH = "generate_launch_description"
@@ -98,7 +98,7 @@ def uncalled_methods(code: ast.AST) -> Iterator[tuple[int, str]]:
                         yield method.lineno, f"{shown} without parentheses is always true; write: {shown}()"
             case ast.Compare(left=ast.Attribute(attr=name) as method) if name in _COUNTS and name not in own:
                 shown = ast.unparse(method)
-                yield method.lineno, f"{shown} without parentheses is a method, and equals no number; write: {shown}()"
+                yield method.lineno, f"{shown} without parentheses is a method, and no number; write: {shown}()"
 
 
 def _method(named: ast.Attribute, parents: Sequence[ast.AST]) -> FunctionNode | None:

@@ -1,11 +1,12 @@
 """Waits of an rclpy program's own functions, such as `main`, for what only a spin would bring, while nothing spins.
 
-A file in which a thread may spin is left out.
+A file in which a thread, a process or a coroutine may spin, or a function of its own, is left out.
 """
 
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 
 from graphflow.analysis.deadlock_check import Finding, Grade
@@ -13,29 +14,34 @@ from graphflow.analysis.rclpy_futures import dotted, polled_futures
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 from graphflow.errors import Place
 
-_SPINS = ("spin", "spin_once", "spin_until_future_complete", "spin_once_until_future_complete", "spin_some")
-_THREADS = ("Thread", "Timer", "ThreadPoolExecutor", "run_in_executor", "to_thread", "start_new_thread")
+_BESIDE = re.compile(r"Thread|Timer|Process|Pool|run_in_executor|create_task|ensure_future|gather|asyncio")
+"""Names of what runs beside a function."""
+_ASKING = ("call_async", "send_goal_async", "get_result_async", "cancel_goal_async")
+_PAUSES = ("sleep", "print", "ok", "done", "info", "debug", "warn", "warning", "error", "get_logger")
+"""Functions that a loop may call and that spin nothing."""
 _MAKERS = ("create_client", "create_rate")
 
 
 def unspun_waits(module: ast.Module, file: str) -> Iterator[Finding]:
     """Find the waits in the functions outside of classes; each run that comes to one stays there."""
-    if any(last_name(node.func) in _THREADS for node in nodes_in(module) if isinstance(node, ast.Call)):
-        return
+    for node in nodes_in(module):
+        match node:
+            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.alias(name=name) if _BESIDE.search(name):
+                return
     for function in module.body:
-        if isinstance(function, FunctionNode):
+        if isinstance(function, ast.FunctionDef):
             yield from _of(function, file)
 
 
-def _of(function: FunctionNode, file: str) -> Iterator[Finding]:
+def _of(function: ast.FunctionDef, file: str) -> Iterator[Finding]:
     made = _made(function)
     for node, parents in walk(function, into_functions=False):
         if not isinstance(node, (ast.While, ast.Call)):
             continue
         text = ""
         match node:
-            case ast.While(test=test, body=body) if not any(map(_spins, body)):
-                future = next(filter(None, map(dotted, polled_futures(test))), "")
+            case ast.While(test=test) if all(name in _PAUSES for name in _called(node)):
+                future = next((name for name in map(dotted, polled_futures(test)) if made.get(name) in _ASKING), "")
                 way = f"write rclpy.spin_until_future_complete(node, {future})"
                 text = f"the loop waits for {future}, and nothing spins meanwhile: {way}" if future else ""
             case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="call")) if made.get(name) == _MAKERS[0]:
@@ -52,14 +58,14 @@ def _of(function: FunctionNode, file: str) -> Iterator[Finding]:
 
 
 def _made(function: FunctionNode) -> dict[str, str]:
-    """Return the names of a function's clients and rates, with the method that makes each."""
+    """Return the names of a function's clients, rates and futures, with the method that makes each."""
     found: dict[str, str] = {}
     for node in nodes_in(function):
         match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=made)) if last_name(made) in _MAKERS:
-                found[name] = last_name(made)
+            case ast.Assign(targets=[target], value=ast.Call(func=made)) if last_name(made) in (*_MAKERS, *_ASKING):
+                found[dotted(target)] = last_name(made)
     return found
 
 
-def _spins(statement: ast.stmt) -> bool:
-    return any(isinstance(node, ast.Call) and last_name(node.func) in _SPINS for node in nodes_in(statement))
+def _called(loop: ast.While) -> Iterator[str]:
+    return (last_name(node.func) for node in nodes_in(loop) if isinstance(node, ast.Call))

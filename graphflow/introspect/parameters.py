@@ -81,7 +81,10 @@ class RemoteParameters:
 
     def unknown(self, name: str) -> ParameterError:
         """Return the error for a parameter that does not exist."""
-        return ParameterError(f"node {self._node} has no parameter {name!r}{did_you_mean(name, self.names())}")
+        known = self.names()
+        if name in known:  # asked again, another node of that name has answered
+            return ParameterError(f"two nodes are called {self._node}, and one has no parameter {name!r}; rename one")
+        return ParameterError(f"node {self._node} has no parameter {name!r}{did_you_mean(name, known)}")
 
 
 def read_value(text: str, type_: int) -> object:

@@ -154,10 +154,20 @@ def _note_order(given: list[Item], note: Complain) -> None:
             before |= {str(param.entries["name"].value)} if "name" in param.entries else set()
             continue
         file = Path(str(param.entries["from"].value))
-        text = found_text(file, "replace") if before and file.is_file() else ""
+        text = _shared_text(file) if before else ""
         for name in sorted(before & set(re.findall(r"^\s*[\"']?([\w./]+)[\"']?\s*:", text, re.MULTILINE))):
             way = "put the file first, or leave the value out"
             note(param.place, f"param: {name} has a value before {file.name}, which wins here, and not in ROS 2: {way}")
+
+
+def _shared_text(file: Path) -> str:
+    """Return the text of a parameter file, if it is for all nodes; else it may be for others."""
+    try:
+        text = found_text(file, "replace") if file.is_absolute() and file.is_file() else ""
+    except OSError:  # such as a name that is too long
+        return ""
+    is_for_all = re.search(r"^[\"']?/\*\*[\"']?\s*:", text, re.MULTILINE) and text.count("ros__parameters") == 1
+    return text if is_for_all else ""
 
 
 def _refuse_unknown(param: Item, complain: Complain) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from datetime import datetime
 from math import floor, isfinite
 
 from graphflow.errors import EncodeError
@@ -51,6 +52,8 @@ def _one(type_: FieldType, value: object, fields: Sequence[Field]) -> str | None
     number = _number(value)
     if type_.base in _SPANS and number is not None and isfinite(number):
         return _span(type_, number)
+    if type_.base == _SPANS[0] and isinstance(value, (str, datetime)):
+        return "{sec: 0, nanosec: 0}, in Python self.clock.now()"
     if not type_.is_primitive and fields and number is not None and fields[0].type.base == "float64":
         name = type_.base.rpartition("/")[2]
         return f"{{{fields[0].name}: {float(number)}}}, in Python {name}({fields[0].name}={float(number)})"

@@ -197,7 +197,7 @@ def _note_other(program: Program, file: str | None) -> None:
     Args:
         file: The file that will be imported for the program.
     """
-    if program.entry is not None and file is not None and not program.file.samefile(file):
+    if program.entry is not None and file is not None and Path(file).is_file() and not program.file.samefile(file):
         top = program.entry.module.partition(".")[0]
         text = f"this runs {file}, and not {program.file}: two packages have a folder {top} for their modules"
         sys.stderr.write(f"note: {text}; rename one, in its setup.py as well\n")

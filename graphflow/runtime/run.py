@@ -78,9 +78,9 @@ class _Running(Unentered[Context]):
     ) -> bool | None:
         idle = [node.name for node in self._nodes if handlers(type(node))]
         if idle and kind is None and not self._has_waited:
-            text = "awaits nothing, so that no handler of %s runs; end it with await asyncio.Event().wait()"
-            way = "or write graphflow.run(...) in place of asyncio.run(...)"
-            logger.warning(f"%s: this block {text}, {way}", self._place, ", ".join(idle))
+            text = "awaits nothing, so that no handler of %s runs"
+            way = "await asyncio.sleep(5.0) in it for a time, or await asyncio.Event().wait() until Ctrl-C"
+            logger.warning(f"%s: this block {text}; {way}", self._place, ", ".join(idle))
         if error is not None and (advice := remark_on(error)):
             error.add_note(advice)
         return await self._block.__aexit__(kind, error, trace)

@@ -209,12 +209,12 @@ def _misspelt(tree: ast.Module) -> Iterator[tuple[int, str]]:
 def _unimported(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yield names that `data_files` needs and nothing imports, and lists that lack a comma between two tuples."""
     nodes = list(ast.walk(tree))
-    known = {
-        (alias.asname or alias.name).partition(".")[0]
-        for node in nodes
-        if isinstance(node, (ast.Import, ast.ImportFrom))
-        for alias in node.names
-    }
+    known = {alias.asname or alias.name.partition(".")[0] for alias in nodes if isinstance(alias, ast.alias)}
+    known |= {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
+    known |= {node.name for node in nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    known |= {node.arg for node in nodes if isinstance(node, ast.arg)}
+    if "*" in known:
+        known |= {"glob", "os"}
     for node in nodes:
         match node:
             case ast.Call(func=ast.Tuple()):

@@ -12,6 +12,8 @@ from graphflow.workspace.packages import Folder, Package, Workspace, cmake_text,
 _BUILT = ("setup.py", "CMakeLists.txt")
 _SHARED = ("launch", "config", "params", "urdf", "rviz", "worlds", "maps", "meshes")
 """Folders of a package that launch files read after the build."""
+_COMPUTES = re.compile(r"\b(iterdir|walk|rglob|listdir|scandir)\(")
+"""Calls by which a `setup.py` may find its folders itself."""
 _LISTED = 4
 """Files that a line lists."""
 _LAUNCH_FILES = (".py", ".xml", ".yaml", ".yml")
@@ -76,9 +78,13 @@ def uninstalled_files(package: Package) -> str:
         text = f"{_shown(file)} does not install {folder}/, so that ROS 2 would not find it; add"
         if file == cmake:
             return f"{text}: install(DIRECTORY {folder} DESTINATION share/${{PROJECT_NAME}})"
-        listed = ", ".join(repr(f"{folder}/{name}") for name in files[:_LISTED])
-        listed += ", ..." if files[_LISTED:] else ""
-        return f"{text} to data_files: ('share/{package.name}/{folder}', [{listed}]),"
+        if _COMPUTES.search(known):
+            continue
+        place = f"'share/{package.name}/{folder}'"
+        if len(files) > _LISTED:
+            imports = "" if "from glob import glob" in known else ", and at the top: from glob import glob"
+            return f"{text} to data_files: ({place}, glob('{folder}/*')),{imports}"
+        return f"{text} to data_files: ({place}, [{', '.join(repr(f'{folder}/{name}') for name in files)}]),"
     return ""
 
 

@@ -32,7 +32,7 @@ def found(body: str, before: str = "") -> list[str]:
             "then rclpy.spin_until_future_complete(node, future)",
         ),
         (
-            "future = node.ask()\nwhile not future.done():\n    time.sleep(0.1)",
+            "future = node.adder.call_async(request)\nwhile not future.done():\n    time.sleep(0.1)",
             "CERTAIN 4 main: the loop waits for future, and nothing spins meanwhile: write "
             "rclpy.spin_until_future_complete(node, future)",
         ),
@@ -49,10 +49,33 @@ def test_waits_that_never_end(body: str, told: str) -> None:
     assert found(body, "Thread(target=rclpy.spin, args=(node,)).start()") == []
 
 
+WAITS = (
+    f"{CLIENT}future = adder.call_async(request)\nwhile not future.done():\n    time.sleep(0.1)\nadder.call(request)"
+)
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        "import asyncio",
+        "class Spinner(threading.Thread):\n    pass",
+        "pool = ProcessPoolExecutor()",
+        "from concurrent.futures import ThreadPoolExecutor",
+    ],
+)
+def test_programs_in_which_something_else_may_spin(before: str) -> None:
+    """Nothing is certain of them."""
+    assert len(found(WAITS)) == 2
+    assert found(WAITS, before) == []
+    assert [*unspun_waits(ast.parse(f"async def main():\n{indent(WAITS, '    ')}"), "p.py")] == []
+
+
 @pytest.mark.parametrize(
     "body",
     [
-        "future = node.ask()\nwhile not future.done():\n    rclpy.spin_once(node)",
+        "future = node.adder.call_async(request)\nwhile not future.done():\n    rclpy.spin_once(node)",
+        "future = node.adder.call_async(request)\nwhile not future.done():\n    step(node)",
+        "future = pool.submit(work)\nwhile not future.done():\n    time.sleep(0.1)",
         "node.adder.call(request)",
         "subprocess.call(['ls'])",
         "rate.sleep()",

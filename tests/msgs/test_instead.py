@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from typing import Any
 
 import pytest
@@ -48,6 +49,13 @@ def test_values_of_primitive_types(type_name: str, data: Any, text: str | None) 
     with pytest.raises(EncodeError) as caught:
         from_plain(registry.interface_class(type_name), {"data": data})
     assert text is None or str(caught.value) == text
+
+
+@pytest.mark.parametrize("stamp", ["now", datetime(2026, 1, 1, tzinfo=UTC)])
+def test_stamps(stamp: object) -> None:
+    """In a node, its clock gives them."""
+    with pytest.raises(EncodeError, match=r"; write \{sec: 0, nanosec: 0\}, in Python self\.clock\.now\(\)$"):
+        from_plain(registry.interface_class("std_msgs/msg/Header"), {"stamp": stamp})
 
 
 @pytest.mark.parametrize(

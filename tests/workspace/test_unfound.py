@@ -101,17 +101,25 @@ def test_launch_files_that_are_not_installed(
     assert found.startswith(told) if told else found == ""
 
 
-@pytest.mark.parametrize(("count", "end"), [(1, ""), (5, ", ...")])
-def test_files_that_are_not_installed(workspace: Workspace, count: int, end: str) -> None:
-    """The line that is missing can be pasted as it is; it needs no import."""
+@pytest.mark.parametrize(
+    ("count", "line"),
+    [
+        (1, "('share/lamp/config', ['config/p0.yaml']),"),
+        (5, "('share/lamp/config', glob('config/*')),, and at the top: from glob import glob"),
+    ],
+)
+def test_files_that_are_not_installed(workspace: Workspace, count: int, line: str) -> None:
+    """The line that is missing can be pasted as it is."""
     folder = workspace.packages["lamp"].folder
     (folder / "config").mkdir()
     files = [f"config/p{number}.yaml" for number in range(count)]
     for file in files:
         (folder / file).touch()
     package = find_workspace(workspace.root).packages["lamp"]
-    listed = ", ".join(map(repr, files[:4]))
-    assert uninstalled_files(package).endswith(f"add to data_files: ('share/lamp/config', [{listed}{end}]),")
+    assert uninstalled_files(package).endswith(f"add to data_files: {line}")
+    setup = folder / "setup.py"
+    setup.write_text(f"{setup.read_text()}\nfound = os.walk('.')\n")
+    assert uninstalled_files(find_workspace(workspace.root).packages["lamp"]) == ""
 
 
 def test_workspaces_within_another(workspace: Workspace) -> None:

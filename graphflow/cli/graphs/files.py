@@ -277,7 +277,8 @@ def _refuse_other_files(file: Path) -> None:
     """
     kind = file.suffix.removeprefix(".")
     if kind in ("msg", "srv", "action") and file.is_file():
-        name = f"{file.resolve().parents[1].name}/{kind}/{file.stem}"
+        folder = file.resolve().parent
+        name = f"{folder.parent.name}/{kind}/{file.stem}" if folder.name == kind else f"PACKAGE/{kind}/{file.stem}"
         raise UsageFault(f"{file} is an interface: graphflow interface show {name} reads it; graphflow ws checks all")
     if file.name in ("CMakeLists.txt", "package.xml", "setup.cfg") and file.is_file():
         raise UsageFault(f"{file} is part of a package: graphflow ws checks those of the workspace")

@@ -206,8 +206,8 @@ def _no_such_package(what: str, executable: str, workspace: Workspace) -> str:
         return substitute
     packages = workspace.packages
     if what in packages:
-        way = f"only those run inside another process; start a process of its own: graphflow run {what} {executable}"
-        return f"{executable!r} of the package {what!r} is no node class written for graphflow: {way}"
+        way = f"run it in a process of its own: graphflow run {what} {executable}"
+        return f"{executable!r} of the package {what!r} is not written for graphflow, and cannot be loaded; {way}"
     near = nearest(what, [*packages, *installed(), *(package for package, _ in with_graphflow())], cutoff=SLIP)
     meant = f"; did you mean {near!r}?" if near is not None else ""
     known_here = f"; {workspace.root} has {', '.join(sorted(packages))}" if packages else ""

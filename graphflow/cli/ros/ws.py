@@ -101,7 +101,7 @@ def _unbuilt_interfaces(package: Package) -> str:
     from graphflow.workspace.packages import cmake_text
 
     cmake = cmake_text(package)
-    listed = re.findall(r"\b((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b", cmake)
+    listed = re.findall(r"(?<![\w/}.-])((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b", cmake)
     for file in listed:
         if not (package.folder / file).is_file():
             there = [f"{name}.{name.partition('/')[0]}" for name in _interfaces_of(package)]

@@ -53,6 +53,10 @@ _OF_OTHERS = {
     "description": ("doc", ""),
     "help": ("doc", ""),
     "value": ("default", ""),
+    **dict.fromkeys(
+        ("params", "params_file", "remap", "log_level", "restart"),
+        ("override", "a node of the file is changed by override: {NODE: {params: {rate: 5.0}}}"),
+    ),
     "choice": ("choices", ""),
     "service": ("call", ""),
     "action": ("goal", ""),

@@ -1,4 +1,4 @@
-"""Unused actions of launch files: `node = Node(...)` without `node` in the description."""
+"""Unused actions of launch files: `node = Node(...)` without `node` in the description, or `Node(...)` alone."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from graphflow.analysis.syntax import last_name
 from graphflow.launchfiles.python.names import NAMES
 
 _ACTIONS = {name for module in ("launch.actions", "launch_ros.actions") for name in NAMES[module].split()}
@@ -21,7 +22,7 @@ class Unused(NamedTuple):
 
 
 def unused_actions(tree: ast.Module) -> Iterator[Unused]:
-    """Yield the actions assigned to a name that the file never reads."""
+    """Yield the actions assigned to a name that the file never reads, and those that nothing takes."""
     read = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Store)}
     # The file may collect its actions by name.
     if "locals" in read or "globals" in read:
@@ -35,10 +36,14 @@ def unused_actions(tree: ast.Module) -> Iterator[Unused]:
         for node in ast.walk(function):
             match node:
                 case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=func) as call) if (
-                    name not in read | shared and ast.unparse(func).rpartition(".")[2] in _ACTIONS
+                    name not in read | shared and last_name(func) in _ACTIONS
                 ):
-                    kind = ast.unparse(func).rpartition(".")[2]
+                    kind = last_name(func)
                     text = f"{name} is in no description: write LaunchDescription([..., {name}])"
+                    yield Unused(node.lineno, text, _argument(call) if kind == "DeclareLaunchArgument" else "")
+                case ast.Expr(value=ast.Call(func=func) as call) if last_name(func) in _ACTIONS:
+                    kind = last_name(func)
+                    text = f"this {kind} is in no description: put it into LaunchDescription([...])"
                     yield Unused(node.lineno, text, _argument(call) if kind == "DeclareLaunchArgument" else "")
 
 

@@ -158,7 +158,8 @@ def _without_waiting(holder: ActivityView, edge: Edge, graph: WaitGraph) -> list
         case Join():
             return [f"return from {handler} instead of waiting in {place}:", "the thread ends by itself then"]
         case SetBy(verb="hears"):
-            return [f"look it up without a timeout in {place},", f"and again when {handler} is called next"]
+            now = f"look it up with rclpy.time.Time() and without a timeout in {place},"
+            return [now, f"and again when {handler} is called next"]
         case SetBy(what=what, is_held=False, queues=queues):
             others = " or ".join(_handlers([name for name in queues if name != _own(holder, graph)], graph))
             others = others or (

@@ -96,7 +96,7 @@ def _attribute(error: BaseException, frames: list[FrameType]) -> str:
             return f"it is in the answer: write await before the call that returns the future, and .{name} of that"
         return f"it is in the answer: future.result().{name}, once the future is done: add_done_callback(...)"
     if type(thing).__name__ in ("ServerGoalHandle", "ClientGoalHandle") and not is_defined_by_user(type(thing)):
-        return _of_goal(type(thing), name)
+        return _of_goal(type(thing), name, frames)
     if error.__class__ is AttributeError and type(thing).__module__ == "rclpy.qos":
         near = nearest(name, [word for word in dir(thing) if not word.startswith("_")])
         return f"did you mean {near!r}?" if near is not None else ""
@@ -115,16 +115,21 @@ def _of_publisher(error: BaseException, frames: list[FrameType]) -> str:
     return f"that is the publisher: {way}"
 
 
-def _of_goal(cls: type, name: str) -> str:
+def _of_goal(cls: type, name: str, frames: list[FrameType]) -> str:
     """Show where a field of a goal or of its result is, instead of in its handle."""
     if cls.__name__ == "ServerGoalHandle":
         return f"it is in the goal: goal_handle.request.{name}"
-    near = nearest(name, [word for word in dir(cls) if not word.startswith("_")])
+    end = "" if name in ("result", "get_result") else f".{name}"
+    near = nearest(name, [word for word in dir(cls) if not word.startswith("_")]) if end else None
     if near is not None:
         return f"did you mean {near!r}?"
+    users = own(frames)
+    if users and "self" not in users[-1].f_locals:  # the program's main function, where nothing else spins
+        ways = "result_future = goal_handle.get_result_async(), rclpy.spin_until_future_complete(node, result_future)"
+        return f"this is the goal's handle, and the result comes later: {ways}, result_future.result().result{end}"
     return (
         "this is the goal's handle, and the result comes later: "
-        f"goal_handle.get_result_async().add_done_callback(self.done), and there future.result().result.{name}"
+        f"goal_handle.get_result_async().add_done_callback(self.done), and there future.result().result{end}"
     )
 
 

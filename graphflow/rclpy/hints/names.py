@@ -183,9 +183,11 @@ def _unbound(name: str, frame: FrameType) -> str:
 def unset(error: BaseException, frames: list[FrameType]) -> str:
     """Name the method that sets an attribute that is still None."""
     users = own(frames)
-    if not isinstance(error, AttributeError) or not str(error).startswith("'NoneType' object") or not users:
+    if not isinstance(error, AttributeError) or not users:
         return ""
     frame = users[-1]
+    if not str(error).startswith("'NoneType' object"):
+        return _unset_yet(error, frame)
     for path in PATH.findall(line_of(frames)):
         first, *rest = path.split(".")
         node = frame.f_locals.get(first)
@@ -197,6 +199,20 @@ def unset(error: BaseException, frames: list[FrameType]) -> str:
                 place = short_place(code.co_filename, code.co_firstlineno)
                 name = f"self.{rest[0]}"
                 return f"{name} is None until {code.co_name} ({place}) sets it: write if {name} is None: return"
+    return ""
+
+
+def _unset_yet(error: AttributeError, frame: FrameType) -> str:
+    """Name the callback that sets an attribute which a node does not have yet."""
+    node = frame.f_locals.get("self")
+    if node is None or error.obj is not node:
+        return ""
+    for code in _functions(type(node)):
+        sets = any(s.opname == "STORE_ATTR" and s.argval == error.name for s in dis.get_instructions(code))
+        if sets and code is not frame.f_code and code.co_name != "__init__":
+            place, name = short_place(code.co_filename, code.co_firstlineno), f"self.{error.name}"
+            ways = f"write {name} = None in __init__, and here if {name} is None: return"
+            return f"{name} is not there until {code.co_name} ({place}) sets it: {ways}"
     return ""
 
 
@@ -213,7 +229,7 @@ FORMER = {
     "rclpy.init_node": "write rclpy.init(), and node = rclpy.create_node('name')",
     "rclpy.Publisher": "write node.create_publisher(Type, 'topic', 10)",
     "rclpy.Subscriber": "write node.create_subscription(Type, 'topic', callback, 10)",
-    "rclpy.Rate": "write node.create_rate(10.0), or make a timer",
+    "rclpy.Rate": "make a timer in place of the loop: node.create_timer(0.1, callback)",
     "rclpy.sleep": "make a timer: node.create_timer(1.0, callback)",
     "rclpy.is_shutdown": "write not rclpy.ok()",
     "rclpy.loginfo": "write node.get_logger().info(...)",

@@ -27,10 +27,6 @@ ATTRIBUTES = {
     "RcutilsLogger.info_throttle RcutilsLogger.warn_throttle RcutilsLogger.warning_throttle": (
         "the seconds between two are an argument: get_logger().info(..., throttle_duration_sec=1.0)"
     ),
-    "ClientGoalHandle.result ClientGoalHandle.get_result": (
-        "the result comes later: goal_handle.get_result_async().add_done_callback(self.done), and there "
-        "future.result().result"
-    ),
     "Client.wait_for_server": "for a service, use wait_for_service()",
     "Client.send_goal Client.send_goal_async": "for a service, use call_async(request)",
     "ActionClient.call ActionClient.call_async": "for an action, use send_goal_async(goal)",
@@ -96,7 +92,7 @@ TEXTS: dict[str, str] = {
     r"Third element (.*) at index .* is not a ParameterDescriptor": (
         "the third argument is a ParameterDescriptor(description={0!r}), from rcl_interfaces.msg"
     ),
-    r"unknown ROS arguments: .*'\S+ [^']*'": "each word is an argument of its own, as in ['-p', 'speed:=1.0']",
+    r"unknown ROS arguments: .*'[^' ]+ [^']*'": "each word is an argument of its own, as in ['-p', 'speed:=1.0']",
     r"not supported between instances of .*'array\.array'": (
         "that is a whole array: compare an element, as in ranges[0], or min(ranges)"
     ),

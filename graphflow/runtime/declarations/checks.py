@@ -35,6 +35,11 @@ def check_node(node: object) -> None:
         raise DeclarationError(f"{node.__name__} is a class; create a node: {node.__name__}()")
     if isinstance(node, (list, tuple)):
         raise DeclarationError("pass nodes as separate arguments, as in running(talker, listener) or running(*nodes)")
+    if inspect.iscoroutine(node) or inspect.iscoroutinefunction(node):
+        call = f"{node.__name__}()"
+        if inspect.iscoroutine(node):
+            node.close()  # or Python warns that it was never awaited, too
+        raise DeclarationError(f"{call} is a coroutine of your own, and not a node: run it by asyncio.run({call})")
     if not hasattr(type(node), "_core_class"):
         raise DeclarationError(f"{node!r} is not a node: an object of a class that derives from graphflow.Node")
 

@@ -6,7 +6,7 @@ import pytest
 from pydantic import BaseModel
 
 from graphflow.graph.checks.foreign_keys import _CONTAINED, correction
-from graphflow.graph.model import Arg, GraphFile, GroupBlock, NodeSpec, StepSpec, keys_of
+from graphflow.graph.model import Arg, GraphFile, GroupBlock, IncludeBlock, NodeSpec, StepSpec, keys_of
 
 
 @pytest.mark.parametrize(
@@ -22,6 +22,7 @@ from graphflow.graph.model import Arg, GraphFile, GroupBlock, NodeSpec, StepSpec
         ("action", StepSpec, "it is called 'goal' here"),
         ("sleep", StepSpec, "it is called 'delay' here"),
         ("description", Arg, "it is called 'doc' here"),
+        ("params", IncludeBlock, "a node of the file is changed by override: {NODE: {params: {rate: 5.0}}}"),
         ("ns", GroupBlock, "it is called 'namespace' here"),
         ("sleep", NodeSpec, ""),
         ("service", NodeSpec, ""),
@@ -32,7 +33,7 @@ def test_what_is_meant(key: str, model: type[BaseModel], text: str) -> None:
     assert correction(key, keys_of(model)) == text
 
 
-@pytest.mark.parametrize("model", [Arg, GraphFile, GroupBlock, NodeSpec, StepSpec])
+@pytest.mark.parametrize("model", [Arg, GraphFile, GroupBlock, IncludeBlock, NodeSpec, StepSpec])
 def test_keys_of_graph_files(model: type[BaseModel]) -> None:
     """What may stand there is never answered."""
     from graphflow.graph.checks.foreign_keys import _OF_COMPOSE, _OF_NODES

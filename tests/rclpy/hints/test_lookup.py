@@ -235,18 +235,25 @@ def test_an_error_that_cannot_be_looked_at() -> None:
 @pytest.mark.parametrize(
     ("name", "sentence"),
     [
-        (
-            "delta",
-            "this is the goal's handle, and the result comes later: "
-            "goal_handle.get_result_async().add_done_callback(self.done), and there future.result().result.delta",
-        ),
+        ("delta", "future.result().result.delta"),
+        ("result", "future.result().result"),
         ("acepted", "did you mean 'accepted'?"),
     ],
 )
 def test_a_field_of_the_result_in_the_handle(name: str, sentence: str) -> None:
     """The handle has no result's fields; the way to the result is told, and the attribute that is almost meant."""
     handle = ClientGoalHandle.__new__(ClientGoalHandle)
-    assert hint_of(lambda: getattr(handle, name)) == sentence
+
+    class Asker:
+        def read(self) -> object:
+            return getattr(handle, name)
+
+    start = "" if sentence.endswith("?") else "this is the goal's handle, and the result comes later: "
+    later = "" if not start else "goal_handle.get_result_async().add_done_callback(self.done), and there "
+    assert hint_of(Asker().read) == f"{start}{later}{sentence}"
+    spun = "result_future = goal_handle.get_result_async(), rclpy.spin_until_future_complete(node, result_future)"
+    expected = f"{start}{spun}, result_{sentence}" if start else sentence
+    assert hint_of(lambda: getattr(handle, name)) == expected  # in a function of the program's
 
 
 def test_an_argument_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:

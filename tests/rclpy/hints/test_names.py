@@ -64,6 +64,11 @@ LAMPS = [
     ),
     ("def tick(self):\n    print(None.x)", ""),
     (
+        "def tick(self):\n    print(self.later)\ndef on_later(self):\n    self.later = 1",
+        "self.later is not there until on_later (lamp.py:12) sets it: write self.later = None in __init__, and here if "
+        "self.later is None: return",
+    ),
+    (
         "def tick(self):\n    def blink(self):\n        pass\n    self.blink",
         "blink (lamp.py:12) is inside tick: indent it like tick itself",
     ),

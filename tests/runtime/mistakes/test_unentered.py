@@ -60,6 +60,8 @@ async def test_with_in_place_of_async_with(graph: Graph) -> None:
         (Asker, r"Asker is a class; create a node: Asker\(\)"),
         ([], r"pass nodes as separate arguments, as in running\(talker, listener\)"),
         ("asker", "'asker' is not a node"),
+        (asyncio.sleep, r"sleep\(\) is a coroutine of your own, and not a node: run it by asyncio.run\(sleep\(\)\)"),
+        (asyncio.sleep(0), r"sleep\(\) is a coroutine of your own"),
     ],
 )
 def test_what_is_no_node(given: Node, told: str) -> None:
@@ -86,4 +88,4 @@ async def test_a_block_that_ends_at_once(graphflow_runner: asyncio.Runner, caplo
         async with running(Ticking(), context=context):
             raise ValueError("an own error")
     [text] = caplog.messages
-    assert text.startswith(f"{__file__}:{line}: this block awaits nothing, so that no handler of ticking runs; end it")
+    assert text.startswith(f"{__file__}:{line}: this block awaits nothing, so that no handler of ticking runs; await")

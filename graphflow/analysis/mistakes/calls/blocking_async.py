@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
-from graphflow.analysis.syntax import walk
+from graphflow.analysis.syntax import last_name, walk
 
 _SHORT = 0.05
 """Seconds that a sleep may take without anybody noticing."""
@@ -31,7 +31,16 @@ def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
             case ast.While(test=ast.Constant(value=True | 1)):
                 if not any(_pauses(part) for part, _ in walk(node, into_functions=False)):
                     text = "this loop never awaits, so no other handler of the process runs"
-                    yield node.lineno, f"{text}; end each turn with await self.clock.sleep(0.1), or write @timer(0.1)"
+                    way = "end each turn with await self.clock.sleep(0.1), or write @timer(0.1) in place of the loop"
+                    if _is_timer(parents):
+                        way = "leave out the loop: the timer repeats what is in it"
+                    yield node.lineno, f"{text}; {way}"
+
+
+def _is_timer(parents: Sequence[ast.AST]) -> bool:
+    """Whether the innermost function is a timer's handler."""
+    function = next(parent for parent in reversed(parents) if isinstance(parent, ast.AsyncFunctionDef))
+    return any(last_name(d.func) == "timer" for d in function.decorator_list if isinstance(d, ast.Call))
 
 
 def _input_in(loop: ast.While) -> ast.Call | None:

@@ -40,9 +40,9 @@ def _without_pause(loop: ast.While, method: FunctionNode | None) -> Iterator[tup
 def _way_to_wait(function: FunctionNode | None) -> str:
     """Return the advice for a loop that waits for an attribute or a name, by the function that it is in."""
     if isinstance(function, ast.AsyncFunctionDef):
-        return "await an asyncio.Event that the handler sets"
+        return "return from it, and go on in the handler that it waits for"
     if function is not None and function.args.args and function.args.args[0].arg == "self":
-        return "go on in the callback that it waits for, or in a timer"
+        return "if a callback ends it, go on there, or in a timer"
     return "if a callback of a node ends it, call rclpy.spin_once(node) in it"
 
 

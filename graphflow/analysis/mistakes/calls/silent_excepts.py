@@ -14,11 +14,13 @@ _TEXT = "hides every error, misspelt names included: write the exception that yo
 def silent_excepts(module: ast.Module) -> Iterator[tuple[int, str]]:
     """Find the handlers that catch everything and do nothing, around work with messages; each with a sentence.
 
-    Only methods are searched. Code that talks to a device, or that ends a program, may expect any error.
+    Only methods are searched that have a decorator, or that a call is given, as callbacks are: code that talks to a
+    device, or that ends a program, may expect any error.
     """
+    passed = {last_name(argument) for node in nodes_in(module) if isinstance(node, ast.Call) for argument in node.args}
     for cls in nodes_in(module):
         for method in cls.body if isinstance(cls, ast.ClassDef) else ():
-            if isinstance(method, FunctionNode):
+            if isinstance(method, FunctionNode) and (method.decorator_list or method.name in passed):
                 for tried in nodes_in(method):
                     if isinstance(tried, ast.Try) and _is_of_messages(tried.body, method):
                         yield from ((item.lineno, f"this {_TEXT}") for item in tried.handlers if _is_silent(item))

@@ -13,7 +13,8 @@ from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 
 _CALLED_BACK = {"create_timer": "timer", "create_subscription": "subscription"}
-_SHOWING = ("print", "debug", "info", "warn", "warning", "error")
+_SHOWING = ("debug", "info", "warn", "warning", "error")
+_LOGGERS = ("get_logger", "log", "logger")
 _KINDS = {**_CALLED_BACK, "timer": "timer", "subscription": "subscription"}
 
 
@@ -83,7 +84,12 @@ def _unread(method: FunctionNode, attributes: set[str], later: set[str]) -> Iter
 
 def _is_shown(parent: ast.AST) -> bool:
     """Whether a part of the source shows what is inside it, to people only."""
-    return isinstance(parent, ast.Call) and last_name(parent.func) in _SHOWING
+    match parent:
+        case ast.Call(func=ast.Name(id="print"), keywords=[]):
+            return True
+        case ast.Call(func=ast.Attribute(value=owner, attr=name)) if name in _SHOWING:
+            return last_name(owner.func if isinstance(owner, ast.Call) else owner) in _LOGGERS
+    return False
 
 
 def _is_pure(value: ast.expr) -> bool:

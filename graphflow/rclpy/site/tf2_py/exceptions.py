@@ -36,8 +36,8 @@ def in_words_of_tf2(error: TransformError) -> TransformException:
             way = f"when looking up transform from frame [{error.source}] to frame [{error.target}]"
             extrapolation = ExtrapolationException(f"Lookup would require extrapolation {_missing(error)}, {way}")
             if error.requested_ns > error.newest_ns:
-                latest = "rclpy.time.Time() asks for the latest transform"
-                extrapolation.add_note(f"note: {latest}; with timeout=Duration(seconds=1.0), the lookup waits for it")
+                latest = "write rclpy.time.Time() in place of the time: it asks for the latest transform"
+                extrapolation.add_note(f"note: {latest}")
             return extrapolation
         case UnknownFrame():
             role = "target_frame" if error.frame == error.target else "source_frame"

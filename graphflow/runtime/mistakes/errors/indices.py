@@ -15,7 +15,9 @@ _EMPTY = re.compile(
 _ACROSS = re.compile(r"(?P<list>\b[A-Za-z_][\w.]*)\[-(?P<last>\d+) *: *(?P<first>\d+)\]")
 _INDEXED = re.compile(r"\b([A-Za-z_][\w.]*)\[")
 _FRACTION = re.compile(r" indices must be integers(?: or slices, not float|, not 'float'|$)")
-_DIVIDED = re.compile(r"\[[^\[\]]*[^\[\]/](?P<slash>/)[^\[\]/][^\[\]]*\]")
+_HALVED = re.compile(r"\[ *len\([\w.]+\) */ *\d+ *\]")
+_READ = 1000
+"""Characters of a line that are read."""
 
 
 def advise_on_index(error: BaseException, line: str, named: Callable[[str], object]) -> str:
@@ -29,18 +31,23 @@ def advise_on_index(error: BaseException, line: str, named: Callable[[str], obje
 
 
 def _beyond(error: BaseException, line: str, named: Callable[[str], object]) -> str:
-    if not isinstance(error, IndexError):
+    paths = set(_INDEXED.findall(line[:_READ]))
+    if not isinstance(error, IndexError) or "index out of range" not in str(error) or len(paths) != 1:
         return ""
-    for path in _INDEXED.findall(line):
-        if isinstance(thing := named(path), (list, tuple, array)):
-            return f"{path} has {len(thing)} values, [0] to [{len(thing) - 1}]" if thing else f"{path} is empty"
-    return ""
+    path = paths.pop()
+    thing = named(path)
+    if type(thing) not in (list, tuple, array):  # `len` of a subclass may be the user's
+        return ""
+    count = len(thing)  # type: ignore[arg-type]
+    if count == 0:
+        return f"{path} is empty"
+    return f"{path} has {count} value{'s' * (count > 1)}, [0] to [{count - 1}]"
 
 
 def _fraction(error: BaseException, line: str) -> str:
     if not isinstance(error, TypeError) or not _FRACTION.search(str(error)):
         return ""
-    way = "write // in place of /" if _DIVIDED.search(line) else "convert it with int(...)"
+    way = "write // in place of /" if _HALVED.search(line[:_READ]) else "convert it with int(...)"
     return f"an index is a whole number: {way}"
 
 

@@ -56,6 +56,11 @@ def _without_self(frame: FrameType) -> str:
     function = frame.f_code.co_name
     if not function.isidentifier():  # a comprehension of a class body
         return ""
+    code = frame.f_code
+    if re.search(rf"\w\.{function}$", code.co_qualname):
+        if code.co_argcount:
+            return f"the first parameter of {function} is called {code.co_varnames[0]}: call it self"
+        return f"{function} has no parameters: write def {function}(self), without @staticmethod"
     return f"{function} is no method: indent it below its class as def {function}(self, ...), or give it the node"
 
 

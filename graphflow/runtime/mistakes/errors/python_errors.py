@@ -56,11 +56,11 @@ REMARKS = (
     ),
     Remark(
         r'can only concatenate str \(not "(?P<kind>[A-Z]\w+)"\)',
-        r"\+\s*(?P<name>[a-z]\w*)",
-        "{name} is a {kind}, not a text: take a field of it, as in {name}.data, or use an f-string",
+        r"\+\s*(?P<name>[a-z][\w.]*)",
+        "{name} is a {kind}, not a text: take a part of it, or write it into an f-string",
     ),
     Remark(
-        r"\bpublish\(\) got an unexpected keyword argument '(?P<name>\w+)'",
+        r"\bTopicPublisher\.(_shorten\.<locals>\.)?publish\(\) got an unexpected keyword argument '(?P<name>\w+)'",
         "",
         "publish takes a message: publish(Type({name}=...)), of the publisher's type",
     ),
@@ -135,6 +135,11 @@ REMARKS = (
         r"-: 'float' and 'Time'",
         r"time\.time\(\)\s*-\s*(?P<name>[\w.]+)",
         "a time of ROS is compared with the node's clock: write (self.clock.now() - {name}).seconds",
+    ),
+    Remark(
+        f"-: 'Time' and '{_SECONDS}'",
+        r"(?P<now>[\w.]+\(\))\s*-\s*(?P<name>[\w.]+)\.(seconds|sec|nanosec|nanoseconds)\b",
+        "a difference of two times has the seconds: write ({now} - {name}).seconds",
     ),
     Remark(
         f"-: 'Time' and '{_SECONDS}'",
@@ -267,13 +272,23 @@ OF_VALUES = (
     ),
     Remark(
         "^The truth value of an array with more than one element is ambiguous",
-        r"(?P<array>[A-Za-z_][\w.]*)\s*(?P<sign><=?|>=?|==)\s*(?P<other>[\w.]+)",
+        r"(?P<array>[A-Za-z_][\w.]*)\s*(?P<sign>[=!]=)\s*None",
+        "that compares every element: write {array} is None, or is not None",
+    ),
+    Remark(
+        "^operands could not be broadcast together",
+        r"(?P<array>[A-Za-z_][\w.]*)\s*(?P<sign>[=!]=)\s*\[\s*\]",
+        "that compares every element: write len({array}) {sign} 0",
+    ),
+    Remark(
+        "^The truth value of an array with more than one element is ambiguous",
+        r"(?P<array>[A-Za-z_][\w.]*)\s*(?P<sign><=?|>=?)\s*(?P<other>[\d.]+)",
         "that compares every element: write min({array}) {sign} {other}, max(...), or an element, {array}[0]",
     ),
     Remark(
         "^The truth value of an array with more than one element is ambiguous",
-        r"\d\s*[<>]=?\s*(?P<array>[A-Za-z_][\w.]*)",
-        "that compares every element: take min({array}), max({array}), or an element, {array}[0]",
+        r"^\s*(if|elif|while|return)\b.*[<>]",
+        "that compares every element: take the min(...) of the array, its max(...), or one element, [0]",
     ),
     Remark(
         "^The truth value of an array with more than one element is ambiguous",

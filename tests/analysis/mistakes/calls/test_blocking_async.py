@@ -31,8 +31,16 @@ def test_a_loop_without_a_pause(condition: str) -> None:
     assert line == 3
     assert text == (
         "this loop never awaits, so no other handler of the process runs; end each turn with "
-        "await self.clock.sleep(0.1), or write @timer(0.1)"
+        "await self.clock.sleep(0.1), or write @timer(0.1) in place of the loop"
     )
+
+
+def test_a_loop_in_a_timer() -> None:
+    """The timer is one already."""
+    module = ast.parse("@timer(0.1)\nasync def tick(self):\n    while True:\n        self.out.publish(Twist())\n")
+    [(line, text)] = blocking_async(module)
+    assert line == 3
+    assert text.endswith("; leave out the loop: the timer repeats what is in it")
 
 
 @pytest.mark.parametrize("pause", ["pass", "await self.clock.sleep(0.1)"])

@@ -19,9 +19,15 @@ from graphflow.analysis.mistakes.calls.busy_loops import busy_loops
         ("while not done():\n    rclpy.spin_once(node, timeout_sec=0)", "leave out timeout_sec"),
         ("while rclpy.ok():\n    rclpy.spin_once(node, timeout_sec=0.0)", "takes a whole core"),
         ("while not self.is_done:\n    pass", "nothing else runs in its thread"),
-        ("while node.pose is None:\n    pass", "; if a callback of a node ends it, call rclpy.spin_once(node) in it"),
-        ("def f(self):\n    while not self.is_done:\n        pass", "; go on in the callback that it waits for, or"),
-        ("async def f(self):\n    while not self.is_done:\n        pass", "; await an asyncio.Event that the handler"),
+        ("while node.pose is None:\n    pass", "; if a callback of a node ends it, call rclpy.spin_once"),
+        (
+            "def f(self):\n    while not self.is_done:\n        pass",
+            "; if a callback ends it, go on there",
+        ),
+        (
+            "async def f(self):\n    while not self.is_done:\n        pass",
+            "; return from it, and go on in the",
+        ),
         ("while rclpy.ok():\n    rclpy.spin_once(node)\n    time.sleep(1.0)", "keeps the next one waiting 1 s"),
     ],
 )

@@ -10,7 +10,7 @@ import pytest
 from graphflow.analysis.mistakes.calls.silent_excepts import silent_excepts
 
 TOLD = "this hides every error, misspelt names included: write the exception that you expect, or log it"
-METHOD = "class Talker(Node):\n    def heard(self, message):\n"
+METHOD = "class Talker(Node):\n    @subscription(String, 'chat')\n    def heard(self, message):\n"
 
 
 def found(body: str) -> list[tuple[int, str]]:
@@ -21,8 +21,8 @@ def found(body: str) -> list[tuple[int, str]]:
 @pytest.mark.parametrize("work", ["self.out.publish(3)", "self.near = message.rages[0]", "print(message.dat)"])
 def test_errors_of_callbacks_that_nobody_sees(caught: str, work: str) -> None:
     """They are told at the line of the `except`."""
-    assert found(f"try:\n    {work}\n{caught}\n    pass\n") == [(5, TOLD)]
-    assert found(f"for n in range(3):\n    try:\n        {work}\n    {caught}\n        continue\n") == [(6, TOLD)]
+    assert found(f"try:\n    {work}\n{caught}\n    pass\n") == [(6, TOLD)]
+    assert found(f"for n in range(3):\n    try:\n        {work}\n    {caught}\n        continue\n") == [(7, TOLD)]
 
 
 @pytest.mark.parametrize(
@@ -37,6 +37,16 @@ def test_errors_of_callbacks_that_nobody_sees(caught: str, work: str) -> None:
 def test_errors_that_are_expected_or_seen(body: str) -> None:
     """Nothing is told of them."""
     assert found(body) == []
+
+
+def test_callbacks_without_a_decorator() -> None:
+    """They are known by the call that takes them; other methods may be for a device, or for the end."""
+    source = (METHOD + "        try:\n            message.dat\n        except:\n            pass\n").replace(
+        "    @", "    # @"
+    )
+    assert list(silent_excepts(ast.parse(source))) == []
+    source += "    def start(self):\n        self.create_subscription(String, 'chat', self.heard, 10)\n"
+    assert list(silent_excepts(ast.parse(source))) == [(6, TOLD)]
 
 
 def test_functions_outside_of_classes() -> None:

@@ -57,6 +57,11 @@ def _told(source: str, line: str) -> list[str]:
             "state = 'BACK'\n        self.log.info(f'now {{state}}')",
             LOCAL.format("state = 'BACK'").replace("nothing reads", "only a log reads"),
         ),
+        (
+            NATIVE,
+            "state = 'BACK'\n        print(state)",
+            LOCAL.format("state = 'BACK'").replace("nothing reads", "only a log reads"),
+        ),
         (RCLPY, "scan = message", LOCAL.format("scan = message")),
         (
             NATIVE,

@@ -46,17 +46,25 @@ def test_an_index_with_a_fraction(things: Any) -> None:
     start = "an index is a whole number: "
     assert advise(error, "x = ranges[len(ranges) / 2]") == f"{start}write // in place of /"
     assert advise(error, "x = ranges[self.half] / 2") == f"{start}convert it with int(...)"
-    assert advise(error, "x = ranges[n // 2 * 0.5]") == f"{start}convert it with int(...)"
+    for line in ("x = ranges[n // 2 * 0.5]", "x = ranges[math.radians(30) / scan.angle_increment]"):
+        assert advise(error, line) == f"{start}convert it with int(...)"
     if not isinstance(things, array):
         assert advise(raised(lambda: things["a"]), "x = ranges[len(ranges) / 2]") == ""
 
 
 @pytest.mark.parametrize(
     ("things", "told"),
-    [([1, 2], "scan.ranges has 2 values, [0] to [1]"), (array("f"), "scan.ranges is empty"), ({}, "")],
+    [
+        ([1, 2], "scan.ranges has 2 values, [0] to [1]"),
+        ([1], "scan.ranges has 1 value, [0] to [0]"),
+        (array("f"), "scan.ranges is empty"),
+        ({}, ""),
+    ],
 )
 def test_an_index_beyond_the_end(things: Any, told: str) -> None:
     """It comes with the number of values; of what is no list, nothing is known."""
     error = raised(lambda: [][360])
-    assert advise(error, "front = self.near[0] + scan.ranges[360]", things) == told
+    assert advise(error, "front = scan.ranges[360] / scan.ranges[0]", things) == told
+    assert advise(error, "front = self.near[0] + scan.ranges[360]", things) == ""  # either may be meant
+    assert advise(raised(lambda: [].pop()), "front = scan.ranges[0] = self.near.pop()", things) == ""
     assert advise(error, "front = scan.ranges", things) == ""

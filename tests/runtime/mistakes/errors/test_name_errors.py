@@ -57,6 +57,14 @@ TICK = "    @timer(1.0, group=motion)\n    async def tick(self) -> None: ...\n"
             "def turn():\n    self.rate = 2\nturn()",
             "turn is no method: indent it below its class as def turn(self, ...), or give it the node",
         ),
+        (
+            "class N(Node):\n    def turn(slef):\n        self.rate = 2\nN.turn(1)",
+            "the first parameter of turn is called slef: call it self",
+        ),
+        (
+            "class N(Node):\n    @staticmethod\n    def turn():\n        self.rate = 2\nN.turn()",
+            "turn has no parameters: write def turn(self), without @staticmethod",
+        ),
         ("Duration.of(2.0)", "write from graphflow import Duration"),
         (
             "x = Duration",
