@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from array import array
 from collections.abc import Callable
+from typing import cast
 
 _EMPTY = re.compile(
     "^(min|max)\\(\\) (arg is an empty sequence|iterable argument is empty)|^zero-size array to reduction operation"
@@ -38,7 +39,7 @@ def _beyond(error: BaseException, line: str, named: Callable[[str], object]) -> 
     thing = named(path)
     if type(thing) not in (list, tuple, array):  # `len` of a subclass may be the user's
         return ""
-    count = len(thing)  # type: ignore[arg-type]
+    count = len(cast("list[object]", thing))
     if count == 0:
         return f"{path} is empty"
     return f"{path} has {count} value{'s' * (count > 1)}, [0] to [{count - 1}]"
