@@ -111,6 +111,8 @@ def test_one_that_must_be_there(remote: RemoteParameters) -> None:
     assert remote.known("gain").name == "gain"
     with pytest.raises(ParameterError, match=r"^node /robot has no parameter 'gian'; did you mean 'gain'"):
         remote.known("gian")
+    told = "two nodes are called /robot, and one has no parameter 'gain'; rename one"
+    assert str(remote.unknown("gain")) == told  # the second answer comes from the other node
 
 
 def test_a_node_without_parameter_services(robot: Robot) -> None:

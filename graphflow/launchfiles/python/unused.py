@@ -6,7 +6,6 @@ import ast
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from graphflow.analysis.syntax import last_name
 from graphflow.launchfiles.python.names import NAMES
 
 _ACTIONS = {name for module in ("launch.actions", "launch_ros.actions") for name in NAMES[module].split()}
@@ -36,18 +35,27 @@ def unused_actions(tree: ast.Module) -> Iterator[Unused]:
         for node in ast.walk(function):
             match node:
                 case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=func) as call) if (
-                    name not in read | shared and last_name(func) in _ACTIONS
+                    name not in read | shared and _kind(func) in _ACTIONS
                 ):
-                    kind = last_name(func)
-                    text = f"{name} is in no description: write LaunchDescription([..., {name}])"
-                    yield Unused(node.lineno, text, _argument(call) if kind == "DeclareLaunchArgument" else "")
-                case ast.Expr(value=ast.Call(func=func) as call) if last_name(func) in _ACTIONS:
-                    kind = last_name(func)
-                    text = f"this {kind} is in no description: put it into LaunchDescription([...])"
-                    yield Unused(node.lineno, text, _argument(call) if kind == "DeclareLaunchArgument" else "")
+                    yield Unused(
+                        node.lineno,
+                        f"{name} is in no description: write LaunchDescription([..., {name}])",
+                        _argument(call),
+                    )
+                case ast.Expr(value=ast.Call(func=func) as call) if _kind(func) in _ACTIONS:
+                    text = f"this {_kind(func)} is in no description: put it into LaunchDescription([...])"
+                    yield Unused(node.lineno, text, _argument(call))
+
+
+def _kind(called: ast.expr) -> str:
+    """Return the name of a class, without its module."""
+    return ast.unparse(called).rpartition(".")[2]
 
 
 def _argument(call: ast.Call) -> str:
+    """Return the name of the argument that a call declares; empty for another action."""
+    if _kind(call.func) != "DeclareLaunchArgument":
+        return ""
     named = [keyword.value for keyword in call.keywords if keyword.arg == "name"]
     match [*call.args[:1], *named]:
         case [ast.Constant(value=str(name))]:

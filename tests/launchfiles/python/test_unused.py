@@ -26,6 +26,13 @@ def test_actions_that_nothing_reads() -> None:
     assert (line, argument) == (3, "")
 
 
+def test_actions_that_nothing_takes() -> None:
+    """They are told as well; other calls may have an effect."""
+    [(line, text, argument)] = told("Node(package='a', executable='b')\nld.add_action(Node())\nprint('a')")
+    assert (line, argument) == (2, "")
+    assert text == "this Node is in no description: put it into LaunchDescription([...])"
+
+
 @pytest.mark.parametrize(
     "body",
     [
