@@ -16,6 +16,7 @@ from graphflow.analysis.mistakes.calls.cancelled_futures import cancelled_future
 from graphflow.analysis.mistakes.calls.early_messages import early_messages
 from graphflow.analysis.mistakes.calls.forgotten_callbacks import forgotten_callbacks
 from graphflow.analysis.mistakes.calls.hidden_methods import hidden_methods
+from graphflow.analysis.mistakes.calls.idle_executors import idle_executors
 from graphflow.analysis.mistakes.calls.inverted_waits import inverted_waits
 from graphflow.analysis.mistakes.calls.lifecycle_hooks import lifecycle_hooks
 from graphflow.analysis.mistakes.calls.misgiven import misgiven
@@ -66,4 +67,4 @@ def slips(module: ast.Module) -> list[tuple[int, str]]:
 def foreseen(module: ast.Module) -> list[tuple[int, str]]:
     """Return the lines of a file that fail, or do the wrong thing, when the program comes to them."""
     found = [(early.line, early.text) for early in spins_called(module)]
-    return [*found, *results_passed(module, is_of_threads=False), *misspelt_main(module)]
+    return [*found, *results_passed(module, is_of_threads=False), *misspelt_main(module), *idle_executors(module)]

@@ -1,0 +1,42 @@
+"""Executors that a program for rclpy makes and that `rclpy.spin(node)` does not use."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
+
+
+def idle_executors(module: ast.Module) -> Iterator[tuple[int, str]]:
+    """Find the calls of `rclpy.spin` beside an executor that only gets nodes; each with what to write."""
+    for function in nodes_in(module):
+        if isinstance(function, FunctionNode):
+            made = _made(function)
+            for node in nodes_in(function):
+                match node:
+                    case ast.Call(func=spin, args=[given], keywords=[]) if made and ast.unparse(spin) == "rclpy.spin":
+                        name, kind = next(iter(made.items()))
+                        text = f"rclpy.spin does not use the {kind} in {name}"
+                        yield node.lineno, f"{text}: write rclpy.spin({ast.unparse(given)}, {name})"
+
+
+def _made(function: ast.AST) -> dict[str, str]:
+    """Return the names of the executors that a function makes and never spins, with their classes."""
+    made: dict[str, str] = {}
+    used: set[str] = set()
+    added: set[ast.AST] = set()
+    for node in nodes_in(function):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=cls)) if last_name(cls).endswith(
+                "Executor"
+            ):
+                made[name] = last_name(cls)
+            case ast.Attribute(value=ast.Name() as owner, attr="add_node" | "remove_node" | "shutdown"):
+                added.add(owner)
+    for node in nodes_in(function):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node not in added:
+            used.add(node.id)
+    return {
+        name: kind for name, kind in made.items() if name not in used and not kind.startswith(("Thread", "Process"))
+    }
