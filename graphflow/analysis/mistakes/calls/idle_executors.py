@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
+_CLASSES = ("SingleThreadedExecutor", "MultiThreadedExecutor", "EventsExecutor")
+
 
 def idle_executors(module: ast.Module) -> Iterator[tuple[int, str]]:
     """Find the calls of `rclpy.spin` beside an executor that only gets nodes; each with what to write."""
@@ -24,19 +26,13 @@ def idle_executors(module: ast.Module) -> Iterator[tuple[int, str]]:
 def _made(function: ast.AST) -> dict[str, str]:
     """Return the names of the executors that a function makes and never spins, with their classes."""
     made: dict[str, str] = {}
-    used: set[str] = set()
     added: set[ast.AST] = set()
     for node in nodes_in(function):
         match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=cls)) if last_name(cls).endswith(
-                "Executor"
-            ):
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=cls)) if last_name(cls) in _CLASSES:
                 made[name] = last_name(cls)
             case ast.Attribute(value=ast.Name() as owner, attr="add_node" | "remove_node" | "shutdown"):
                 added.add(owner)
-    for node in nodes_in(function):
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node not in added:
-            used.add(node.id)
-    return {
-        name: kind for name, kind in made.items() if name not in used and not kind.startswith(("Thread", "Process"))
-    }
+    loads = [n for n in nodes_in(function) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)]
+    used = {name.id for name in loads if name not in added}
+    return {name: kind for name, kind in made.items() if name not in used}
