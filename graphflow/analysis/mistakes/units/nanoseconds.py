@@ -1,5 +1,7 @@
 """Nanoseconds that are compared with a few seconds: `(now - self.last).nanoseconds > 0.5`, which is always true.
 
+Also those in an integral, `self.x += self.speed * dt`, where everything else is in seconds.
+
 Only what is seen to come from a clock counts as nanoseconds, and only numbers too small for any span of time are told.
 """
 
@@ -42,6 +44,8 @@ def _compared(module: ast.Module) -> Iterator[tuple[int, str]]:
         return
     bindings = bindings_of(module)
     for node, parents in walk(module):
+        if isinstance(node, ast.AugAssign):
+            yield from _summed(node, bindings, parents)
         if not isinstance(node, ast.Compare) or any(map(_tests, parents)):
             continue
         sides = [node.left, *node.comparators]
@@ -54,6 +58,17 @@ def _compared(module: ast.Module) -> Iterator[tuple[int, str]]:
                 if isinstance(number, float) or _kind(measured, bindings, parents, has_stamps=False) == "nanoseconds":
                     yield node.lineno, _text(measured, limit, number)
                     break
+
+
+def _summed(node: ast.AugAssign, bindings: Bindings, parents: Sequence[ast.AST]) -> Iterator[tuple[int, str]]:
+    """Find a span in nanoseconds in the step of an integral: `self.x += self.speed * dt`."""
+    match node:
+        case ast.AugAssign(op=ast.Add() | ast.Sub(), value=ast.BinOp(left=left, op=ast.Mult(), right=right)):
+            if not any(isinstance(part, ast.Constant) for part in nodes_in(node.value)):  # it may be the unit's factor
+                for span in (left, right):
+                    if _kind(span, bindings, parents) == "nanoseconds":
+                        text = f"{ast.unparse(span)} is in nanoseconds; for seconds write"
+                        yield node.lineno, f"{text} ({ast.unparse(span)} / 1e9)"
 
 
 def _tests(parent: ast.AST) -> bool:

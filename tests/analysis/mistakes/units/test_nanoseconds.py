@@ -39,6 +39,10 @@ class Control(Node):
             "if (now - self.last).nanoseconds > 0.5: go()",
             "(now - self.last).nanoseconds is in nanoseconds, and is compared with 0.5; for 0.5 s write 0.5e9",
         ),
+        (
+            "self.x += self.speed * elapsed",
+            "elapsed is in nanoseconds; for seconds write (elapsed / 1e9)",
+        ),
         ("if elapsed < 2.0: go()", "elapsed is in nanoseconds, and is compared with 2.0; for 2.0 s write 2.0e9"),
         ("if 3 <= elapsed: go()", "elapsed is in nanoseconds, and is compared with 3; for 3 s write 3e9"),
         (
@@ -74,6 +78,9 @@ def test_nanoseconds_and_seconds(line: str, told: str) -> None:
     "line",
     [
         "if elapsed > 2e9: go()",
+        "self.x += self.speed * elapsed * 1e-9",
+        "self.x += self.speed * 2",
+        "self.total += elapsed",
         "if elapsed / 1e9 > 2.0: go()",
         "if elapsed > 0 or elapsed == 0.5 or elapsed < 1: go()",
         "if elapsed > 2_000: go()",
