@@ -55,7 +55,7 @@ _OF_OTHERS = {
     "value": ("default", ""),
     **dict.fromkeys(
         ("params", "params_file", "remap", "log_level", "restart"),
-        ("override", "a node of the file is changed by override: {NODE: {params: {rate: 5.0}}}"),
+        ("file", "a node of the file is changed by override: {NODE: {params: {rate: 5.0}}}"),
     ),
     "choice": ("choices", ""),
     "service": ("call", ""),
@@ -64,7 +64,7 @@ _OF_OTHERS = {
     "message": ("log", ""),
     **dict.fromkeys(("command", "run", "exec"), ("call", _PROGRAM)),
 }
-"""Keys of groups, arguments and steps."""
+"""Keys of groups, arguments, steps and includes."""
 
 
 def correction(key: str, known: Collection[str]) -> str:

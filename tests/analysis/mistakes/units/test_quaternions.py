@@ -17,7 +17,7 @@ from graphflow.analysis.mistakes.units.quaternions import angles_as_quaternions
         ("goal.pose.orientation.z = 90.0", "write math.sin(math.radians(90.0) / 2), and math.cos(math.radians(90.0) /"),
         ("t.transform.rotation.z = self.yaw", "write math.sin(self.yaw / 2)"),
         ("t.transform.rotation.z = math.pi / 2", "write math.sin((math.pi / 2) / 2)"),
-        ("p.orientation.z = math.radians(90)", "write math.sin((math.radians(90)) / 2)"),
+        ("p.orientation.z = math.radians(90)", "write math.sin(math.radians(90) / 2)"),
         ("p.orientation.w = goal_yaw", "it is math.cos(angle / 2)"),
         ("p.orientation = Quaternion(z=theta)", "z is a part of a quaternion"),
         ("Transform.of('a', 'b', rotation=(1.0, 0.0, 0.0, 0.0))", "no turn is (0.0, 0.0, 0.0, 1.0)"),

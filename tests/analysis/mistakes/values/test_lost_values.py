@@ -54,7 +54,7 @@ def _told(source: str, line: str) -> list[str]:
         (NATIVE, "if self.state: state = 'A' if x.y else 'B'", LOCAL.format("state = 'A' if x.y else 'B'")),
         (
             NATIVE,
-            "state = 'BACK'\n        self.log.info(f'now {{state}}')",
+            "state = 'BACK'\n        self.log.info(f'now {state}')",
             LOCAL.format("state = 'BACK'").replace("nothing reads", "only a log reads"),
         ),
         (
@@ -91,7 +91,7 @@ def test_lost_values(source: str, line: str, told: str) -> None:
     "line",
     [
         "self.state = 'BACK'",
-        "state = 'BACK'\n        print(state)",
+        "state = 'BACK'\n        print(state, file=f)",
         "state = 'BACK'\n        return lambda: state",
         "state = self.call()",
         "global state\n        state = 'BACK'",
