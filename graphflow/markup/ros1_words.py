@@ -43,7 +43,7 @@ def attribute(of: str, name: str, value: object = None) -> str:
     """Return the replacement of an attribute of ROS 1, with its value where that is kept; empty for others."""
     text = _ATTRIBUTES.get(f"{of}.{name}", "")
     keeps = isinstance(value, str) and name == "ns"
-    return text.replace('"..."', f'"{value}"') if keeps else text
+    return text.replace('"..."', f'"{value}"').replace("$(arg ", "$(var ") if keeps else text
 
 
 def substitution(inside: str) -> str:

@@ -129,7 +129,8 @@ def _of_goal(cls: type, name: str, frames: list[FrameType]) -> str:
         return f"this is the goal's handle, and the result comes later: {ways}, result_future.result().result{end}"
     return (
         "this is the goal's handle, and the result comes later: "
-        f"goal_handle.get_result_async().add_done_callback(self.done), and there future.result().result{end}"
+        "goal_handle.get_result_async().add_done_callback(self.on_result), and in a new method "
+        f"on_result(self, future): future.result().result{end}"
     )
 
 

@@ -249,7 +249,8 @@ def test_a_field_of_the_result_in_the_handle(name: str, sentence: str) -> None:
             return getattr(handle, name)
 
     start = "" if sentence.endswith("?") else "this is the goal's handle, and the result comes later: "
-    later = "" if not start else "goal_handle.get_result_async().add_done_callback(self.done), and there "
+    asking = "goal_handle.get_result_async().add_done_callback(self.on_result)"
+    later = f"{asking}, and in a new method on_result(self, future): " if start else ""
     assert hint_of(Asker().read) == f"{start}{later}{sentence}"
     spun = "result_future = goal_handle.get_result_async(), rclpy.spin_until_future_complete(node, result_future)"
     expected = f"{start}{spun}, result_{sentence}" if start else sentence

@@ -43,8 +43,8 @@ def in_words_of_tf2(error: TransformError) -> TransformException:
             role = "target_frame" if error.frame == error.target else "source_frame"
             unknown = LookupException(f'"{error.frame}" passed to lookupTransform argument {role} does not exist. ')
             hint = str(error).partition(f"there is no frame {error.frame!r}")[2].lstrip("; ")
-            again = "frames take a while to arrive: catch tf2_ros.TransformException, and try again"
-            unknown.add_note(f"note: {hint}; {again}")
+            again = "frames arrive while the node is spun: look it up in a timer, and catch tf2_ros.TransformException"
+            unknown.add_note(f"note: {hint}; {again} until they are there")
             return unknown
         case FrameLoop():
             found = str(error).partition("loop: ")[2].partition(";")[0]
