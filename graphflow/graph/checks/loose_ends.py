@@ -5,7 +5,7 @@ Any of them may be intended, so they are warnings.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -71,7 +71,7 @@ def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     made = [interface.dynamic_names for interface in known]
     classes += (problem for node in plan.nodes for problem in _of_loops(node, interfaces))
     classes += _of_shared_commands(plan, interfaces)
-    sure = _sure(made)
+    sure = {name for node in plan.nodes for name in _sure(node, interfaces)}
     of_nodes = [*_of_nodes(ends, sure)]
     found = [
         *_of_steps(plan, ends),
@@ -83,10 +83,13 @@ def loose_ends(plan: Plan, interfaces: Interfaces) -> list[Problem]:
     return classes + [problem for name, problem in found if name not in may_exist or _nearest(name, sure)]
 
 
-def _sure(made: Iterable[bool | Sequence[str]]) -> set[str]:
-    """Return the names that nodes surely create at run time: patterns with a `*` for the namespace alone."""
-    patterns = [pattern for names in made if not isinstance(names, bool) for pattern in names]
-    return {pattern[1:] for pattern in patterns if pattern.startswith("*/") and not set(pattern[1:]) & set("*?[")}
+def _sure(node: PlannedNode, interfaces: Interfaces) -> Iterator[str]:
+    """Yield the topics that a node surely creates at run time: patterns with a `*` for its namespace alone."""
+    interface = interfaces[node.class_path]
+    assert isinstance(interface, Interface)
+    for pattern in interface.dynamic_names if not isinstance(interface.dynamic_names, bool) else ():
+        if pattern.startswith("*/") and not set(pattern[1:]) & set("*?["):
+            yield resolver(node).resolve(pattern[2:])
 
 
 def _by_kind(plan: Plan, ends: list[_End]) -> dict[str, dict[str, str]]:
@@ -194,7 +197,8 @@ def _of_nodes(ends: list[_End], sure: set[str]) -> Iterator[tuple[str, Problem]]
         others = _others(end, ends)
         if end.name in others or end.name in _EVERYWHERE:
             continue
-        near = _nearest(end.name, (others | sure) - {same.name for same in ends if same.kind == end.kind})
+        sure_there = sure if end.kind in ("publisher", "subscription") else set[str]()
+        near = _nearest(end.name, (others | sure_there) - {same.name for same in ends if same.kind == end.kind})
         if near not in reported if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:
             reported.add(end.name)
             yield end.name, Problem(end.remapped_at or end.place, _text(end, near))

@@ -123,6 +123,19 @@ def test_names_that_a_node_creates_for_sure() -> None:
         assert told(text.replace("NAME", name), {**KNOWN, "a:Sim": sim}) == []
 
 
+@pytest.mark.parametrize(
+    ("name", "near"), [("/left/turtle1/cmd_vel", ""), ("/turtle1/cmd_vel", "/left/turtle1/cmd_vel"), ("/moved", "")]
+)
+def test_names_that_a_node_creates_in_its_namespace(name: str, near: str) -> None:
+    """The `*` stands for the namespace of each node; remaps count, and services are none of these topics."""
+    sim = Interface("a:Sim", "sim", CODE, dynamic_names=("*/turtle1/cmd_vel", "*/turtle1/moved", "*/?*/cmd_vel"))
+    text = "nodes:\n  /left/s: {class: a:Sim, remap: {turtle1/moved: /moved}}\n"
+    text += f"  /t: {{class: a:Talker, remap: {{chatter: {name}}}}}\n  /left/turtle1/a: {{class: a:Adder}}\n"
+    found = [line for line in told(text, {**KNOWN, "a:Sim": sim}) if "3:33" in line or "calls" in line]
+    told_of = f"g.yaml:3:33: no node of this graph subscribes to {name}; did you mean {near!r}?"
+    assert found == ([told_of] if near else [])
+
+
 def test_a_remap_that_joins_a_node_with_itself() -> None:
     """It is told with the two sides exchanged; other names are left alone."""
     text = "nodes:\n  /a: {class: a:Adder, remap: {/output: input}}\n"
