@@ -56,7 +56,8 @@ def _one(type_: FieldType, value: object, fields: Sequence[Field]) -> str | None
         return "{sec: 0, nanosec: 0}, in Python self.clock.now()"
     if not type_.is_primitive and fields and number is not None and fields[0].type.base == "float64":
         name = type_.base.rpartition("/")[2]
-        return f"{{{fields[0].name}: {float(number)}}}, in Python {name}({fields[0].name}={float(number)})"
+        part, turn = fields[0].name, ", or z for a turn" if name == "Vector3" else ""
+        return f"{{{part}: {float(number)}}}, in Python {name}({part}={float(number)}){turn}"
     if not type_.is_primitive:
         given = list(value) if type(value) is tuple else value
         text, name = _mapping(given, fields), type_.base.rpartition("/")[2]

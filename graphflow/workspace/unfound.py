@@ -82,8 +82,10 @@ def uninstalled_files(package: Package) -> str:
             continue
         place = f"'share/{package.name}/{folder}'"
         if len(files) > _LISTED:
-            imports = "" if "from glob import glob" in known else ", and at the top: from glob import glob"
-            return f"{text} to data_files: ({place}, glob('{folder}/*')),{imports}"
+            line = f"({place}, glob('{folder}/*')),"
+            if "from glob import glob" in known:
+                return f"{text} to data_files: {line}"
+            return f"{text} from glob import glob at the top, and to data_files: {line}"
         return f"{text} to data_files: ({place}, [{', '.join(repr(f'{folder}/{name}') for name in files)}]),"
     return ""
 

@@ -63,7 +63,7 @@ def test_stamps(stamp: object) -> None:
     [
         ([1, 2, 3], "got [1, 2, 3]; write {x: 1.0, y: 2.0, z: 3.0}"),
         ((1, 2, 3), "got (1, 2, 3); write Vector3(x=1.0, y=2.0, z=3.0)"),
-        (2, "got 2; write {x: 2.0}, in Python Vector3(x=2.0)"),
+        (2, "got 2; write {x: 2.0}, in Python Vector3(x=2.0), or z for a turn"),
         ([1, 2], "got [1, 2]; write {x: 0.0, y: 0.0, z: 0.0}"),
     ],
 )

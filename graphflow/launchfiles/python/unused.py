@@ -43,7 +43,10 @@ def unused_actions(tree: ast.Module) -> Iterator[Unused]:
                         _argument(call),
                     )
                 case ast.Expr(value=ast.Call(func=func) as call) if _kind(func) in _ACTIONS:
-                    text = f"this {_kind(func)} is in no description: put it into LaunchDescription([...])"
+                    way = "put it into LaunchDescription([...])"
+                    if function.name != "generate_launch_description":  # that of an OpaqueFunction, for example
+                        way = f"write return [{_kind(func)}(...)]"
+                    text = f"this {_kind(func)} is in no description: {way}"
                     yield Unused(node.lineno, text, _argument(call))
 
 

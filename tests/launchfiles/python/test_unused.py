@@ -31,6 +31,8 @@ def test_actions_that_nothing_takes() -> None:
     [(line, text, argument)] = told("Node(package='a', executable='b')\nld.add_action(Node())\nprint('a')")
     assert (line, argument) == (2, "")
     assert text == "this Node is in no description: put it into LaunchDescription([...])"
+    [(_, text, _)] = unused_actions(ast.parse("def setup(context):\n    Node(package='a', executable='b')\n"))
+    assert text == "this Node is in no description: write return [Node(...)]"
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,9 @@ ROS 2 keeps them all silently, until memory or processor time runs out.
 from __future__ import annotations
 
 import logging
-from types import FunctionType, MethodType
+from collections.abc import Iterator
+from contextlib import suppress
+from types import CellType, FunctionType, MethodType
 from typing import TYPE_CHECKING, Any
 
 from graphflow.errors import Place
@@ -114,7 +116,13 @@ def _bound(timer: Timer) -> tuple[int, ...]:
     if not isinstance(timer.callback, FunctionType):
         return ()
     defaults, cells = timer.callback.__defaults__ or (), timer.callback.__closure__ or ()
-    return tuple(id(value) for value in (*defaults, *(cell.cell_contents for cell in cells)))
+    return tuple(id(value) for value in (*defaults, *(value for cell in cells for value in _held(cell))))
+
+
+def _held(cell: CellType) -> Iterator[object]:
+    """Yield the value of a variable around a function, unless it has none yet."""
+    with suppress(ValueError):  # as in `timer = create_timer(1.0, lambda: timer.cancel())`
+        yield cell.cell_contents
 
 
 def _topic(made: Any) -> str:

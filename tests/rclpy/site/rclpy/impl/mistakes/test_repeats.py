@@ -49,6 +49,22 @@ def test_what_a_callback_makes(node: Node, spin: Spinner, caplog: Caplog) -> Non
     ]
 
 
+def test_timers_that_cancel_themselves(node: Node, spin: Spinner, caplog: Caplog) -> None:
+    """Their variable has no value yet while they are made, however many of them wait."""
+    runs: list[float] = []
+
+    def tick() -> None:
+        def once() -> None:
+            timer.cancel()
+            runs.append(0.2)
+
+        timer = node.create_timer(0.2, once)
+
+    node.create_timer(0.005, tick)
+    spin(lambda: len(runs) > MANY)
+    assert len(told(caplog)) <= 1
+
+
 def test_timers_that_a_constructor_makes(node: Node, caplog: Caplog) -> None:
     """They are as many as it wants, also of one callback."""
 
