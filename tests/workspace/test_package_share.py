@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -150,3 +151,18 @@ def test_too_many_files(package: Package, monkeypatch: pytest.MonkeyPatch) -> No
     assert len(found) > 2
     monkeypatch.setattr(package_share, "FILES_BOUND", 3)
     assert [*package_share._installed(package)] == found[:2]
+
+
+@pytest.mark.parametrize("failures", [1, 5])
+def test_a_parser_that_other_threads_disturb(package: Package, monkeypatch: pytest.MonkeyPatch, failures: int) -> None:
+    """It is asked again, a few times."""
+    (package.folder / "setup.py").write_text(SETUP)
+    parse, left = ast.parse, [SystemError("depth mismatch")] * failures
+
+    def disturbed(text: str) -> ast.Module:
+        if left:
+            raise left.pop()
+        return parse(text)
+
+    monkeypatch.setattr(ast, "parse", disturbed)
+    assert bool([*package_share._installed(package)]) is (failures == 1)
