@@ -1,10 +1,12 @@
 """Safe reading of files of unknown kind: only regular files, up to a size.
 
-Opening a FIFO or a device that is called `package.xml` could block, and some files have no end.
+Opening a FIFO or a device that is called `package.xml` could block, and some files have no end. Also safe parsing of
+Python sources, in any thread.
 """
 
 from __future__ import annotations
 
+import ast
 import errno
 import os
 import stat
@@ -12,6 +14,8 @@ from pathlib import Path
 
 FOUND_BOUND = 10_000_000
 """Size limit in bytes: sources, definitions and manifests are far smaller."""
+ATTEMPTS = 5
+"""Times that a source is parsed before it is given up."""
 
 
 def found_bytes(path: Path, bound: int = FOUND_BOUND) -> bytes:
@@ -56,6 +60,21 @@ def lenient_text(path: Path, bound: int = FOUND_BOUND) -> str:
 def why_no_file(path: Path, absent: str = "there is no such file") -> str:
     """Return why a path is not read as a file: it is a FIFO, a socket or a device, or, as `absent` says, not there."""
     return "it is not a regular file" if path.exists() and not path.is_dir() else absent
+
+
+def parsed(text: str) -> ast.Module:
+    """Parse a source in any thread.
+
+    Raises:
+        SyntaxError, ValueError: It cannot be parsed.
+    """
+    # Python 3.11's parser keeps one counter for all threads, and may fail if two of them parse at once (gh-106905).
+    for _ in range(ATTEMPTS):
+        try:
+            return ast.parse(text)
+        except SystemError as error:
+            reason = error
+    raise ValueError(f"other threads keep Python's parser busy: {reason}")
 
 
 def _open_at_once(path: str, flags: int) -> int:

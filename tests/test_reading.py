@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import os
 from pathlib import Path
 
 import pytest
 
-from graphflow.reading import found_bytes, found_text, lenient_text, why_no_file
+from graphflow.reading import found_bytes, found_text, lenient_text, parsed, why_no_file
+from tests.parser import disturb
 
 pytestmark = pytest.mark.timeout(20)
 
@@ -85,3 +87,14 @@ def test_a_file_that_may_be_anything(tmp_path: Path) -> None:
     file.write_bytes(b"a\xff\r\n")
     assert lenient_text(file) == "a\ufffd\n"
     assert lenient_text(file, 2) == ""
+
+
+@pytest.mark.parametrize(("failures", "is_parsed"), [(4, True), (5, False)])
+def test_a_parser_that_other_threads_disturb(monkeypatch: pytest.MonkeyPatch, failures: int, is_parsed: bool) -> None:
+    """It is asked again, a few times."""
+    disturb(monkeypatch, failures)
+    if is_parsed:
+        assert ast.unparse(parsed("a = 1")) == "a = 1"
+    else:
+        with pytest.raises(ValueError, match="other threads keep Python's parser busy"):
+            parsed("a = 1")

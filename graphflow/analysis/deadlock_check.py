@@ -30,7 +30,7 @@ from graphflow.graph.checks.check import Interfaces, resolver
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.interface import NO_GROUP, GroupChange, GroupInfo, HandlerInfo, Interface, may_make
 from graphflow.machines.regrouping import Regrouping
-from graphflow.reading import found_text
+from graphflow.reading import found_text, parsed
 
 Grade = Literal["CERTAIN", "IF THIS BRANCH RUNS", "POSSIBLE", "unresolved"]
 LONGEST = 40
@@ -424,10 +424,6 @@ def _released(function: ast.AST) -> set[ast.AST]:
 @cache
 def _module(file: str) -> ast.Module:
     try:
-        text = found_text(Path(file))
-        try:
-            return ast.parse(text)
-        except SystemError:  # CPython until 3.11.7, if another thread parses at the same time (gh-106905)
-            return ast.parse(text)
-    except (OSError, SyntaxError, UnicodeDecodeError):
+        return parsed(found_text(Path(file)))
+    except (OSError, SyntaxError, ValueError):
         return ast.Module([], [])

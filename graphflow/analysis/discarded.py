@@ -5,8 +5,9 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Iterator
 
-from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, parsed, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 from graphflow.analysis.uncalled import uncalled
+from graphflow.reading import parsed
 
 
 def discarded(source: str, file: str, classes: Collection[str]) -> str:

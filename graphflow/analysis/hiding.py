@@ -10,11 +10,11 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from types import ModuleType
 
-from graphflow.analysis.syntax import nodes_in, parsed
+from graphflow.analysis.syntax import nodes_in
 from graphflow.analysis.user_code import is_installed, is_users
 from graphflow.msgs import registry
 from graphflow.msgs.registry import KINDS
-from graphflow.reading import found_text
+from graphflow.reading import found_text, parsed
 from graphflow.system import SITE
 
 _LACKING = re.compile(r"cannot import name|is not a package")

@@ -12,8 +12,9 @@ from collections.abc import Iterator
 from pathlib import PurePath
 from types import FrameType
 
-from graphflow.analysis.syntax import nodes_in, parsed
+from graphflow.analysis.syntax import nodes_in
 from graphflow.errors import Place
+from graphflow.reading import parsed
 
 _CALL = re.compile(r"\brun\(")
 _ENDS = re.compile(r"\b(shutdown|exit|SystemExit|kill|raise_signal)\b")

@@ -7,8 +7,8 @@ import tokenize
 from collections.abc import Iterator, Sequence
 from functools import cache, cached_property
 
-ATTEMPTS = 5
-"""Times that a source is parsed before its check is given up."""
+from graphflow.reading import parsed
+
 FunctionNode = ast.FunctionDef | ast.AsyncFunctionDef
 NESTED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
 LOOPS = (ast.For, ast.AsyncFor, ast.While, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
@@ -150,18 +150,3 @@ def loops_at(syntax: Syntax, first: int, line: int) -> list[ast.For | ast.While]
         for loop in nodes_in(function)
         if isinstance(loop, (ast.For, ast.While)) and loop.lineno <= line <= (loop.end_lineno or 0)
     ]
-
-
-def parsed(text: str) -> ast.Module:
-    """Parse a source in any thread.
-
-    Raises:
-        SyntaxError, ValueError: It cannot be parsed.
-    """
-    # Python 3.11's parser keeps one counter for all threads, and may fail if two of them parse at once (gh-106905).
-    for _ in range(ATTEMPTS):
-        try:
-            return ast.parse(text)
-        except SystemError as error:
-            reason = error
-    raise ValueError(f"other threads keep Python's parser busy: {reason}")

@@ -6,7 +6,8 @@ import ast
 from collections.abc import Iterator, Sequence
 
 from graphflow.analysis.attribute_uses import is_own
-from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, parsed, walk
+from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
+from graphflow.reading import parsed
 
 _RUNNERS = ("run", "running", "init", "spin")
 """Names of functions by which a program runs nodes."""

@@ -27,11 +27,11 @@ from types import FrameType
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
-from graphflow.analysis.syntax import children_of, nodes_in, parsed
+from graphflow.analysis.syntax import children_of, nodes_in
 from graphflow.deadlock.asyncio_frames import TaskLike
 from graphflow.errors import Place
 from graphflow.executor.runner import Run
-from graphflow.reading import found_text
+from graphflow.reading import found_text, parsed
 
 VARIABLE = "GRAPHFLOW_RACES"
 

@@ -16,12 +16,10 @@ from glob import glob
 from pathlib import Path, PurePosixPath
 
 from graphflow.folders import state_root
-from graphflow.reading import found_text
+from graphflow.reading import found_text, parsed
 from graphflow.workspace.packages import Package, cmake_text
 from graphflow.workspace.setup_file import constant_text, constants
 
-_ATTEMPTS = 5
-"""Times that a source is parsed before it is given up."""
 FILES_BOUND = 5000
 _INSTALL = re.compile(r"install\s*\(\s*(DIRECTORY|FILES|PROGRAMS)\s+(.*?)\)", re.DOTALL | re.IGNORECASE)
 _END_OF_FILES = re.compile(r"\s(?:DESTINATION|PATTERN|FILES_MATCHING|USE_SOURCE_PERMISSIONS|RENAME)\s", re.IGNORECASE)
@@ -75,7 +73,7 @@ def _link(folder: Path, source: Path, moved: Mapping[PurePosixPath, Path]) -> No
 def _of_setup_py(package: Package) -> Iterator[tuple[str, Path]]:
     """Yield the destinations and files of `data_files`, as far as they are literal."""
     try:
-        tree = _parsed(found_text(package.folder / "setup.py", "replace"))
+        tree = parsed(found_text(package.folder / "setup.py", "replace"))
     except (OSError, SyntaxError, ValueError):
         return
     known = constants(tree)
@@ -85,15 +83,6 @@ def _of_setup_py(package: Package) -> Iterator[tuple[str, Path]]:
             if destination is not None and destination.startswith("share"):
                 for file in _files(node.elts[1], known, package.folder):
                     yield destination, package.folder / file
-
-
-def _parsed(text: str) -> ast.Module:
-    """Parse a source in any thread. Raises SyntaxError or ValueError."""
-    for _ in range(_ATTEMPTS):
-        # Python 3.11's parser keeps one counter for all threads, and may fail if two of them parse at once (gh-106905).
-        with suppress(SystemError):
-            return ast.parse(text)
-    raise ValueError("other threads keep Python's parser busy")
 
 
 def _files(node: ast.expr, known: Mapping[str, str], folder: Path) -> list[str]:

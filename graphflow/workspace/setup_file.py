@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.names import did_you_mean, nearest
-from graphflow.reading import lenient_text
+from graphflow.reading import lenient_text, parsed
 
 _SCRIPT = re.compile(r"\s*([\w.-]+)\s*=\s*([\w.]+)\s*:\s*([\w.]+)\s*(?:\[[\w\s.,-]*\]\s*)?")
 """An entry point; extras in brackets are ignored."""
@@ -44,10 +44,10 @@ class SetupFile:
     def tree(self) -> ast.Module | SyntaxError:
         """The syntax tree, or the error in the file."""
         try:
-            return ast.parse(self.text)
+            return parsed(self.text)
         except SyntaxError as error:
             return error
-        except ValueError as error:  # null bytes
+        except ValueError as error:  # null bytes, for example
             return SyntaxError(str(error))
 
     @property

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.analysis.syntax import children_of, first_line, is_nested, nodes_in, parsed, syntax_of, walk
+from graphflow.analysis.syntax import children_of, first_line, is_nested, nodes_in, syntax_of, walk
 
 TEXT = """
 import asyncio as aio, os
@@ -78,21 +78,3 @@ def test_a_file_that_cannot_be_read(tmp_path: Path, text: str | None, error: typ
     for _ in range(2):
         with pytest.raises(error):
             syntax_of(str(tmp_path / "x.py"))
-
-
-@pytest.mark.parametrize(("failures", "is_parsed"), [(4, True), (5, False)])
-def test_a_busy_parser(monkeypatch: pytest.MonkeyPatch, failures: int, is_parsed: bool) -> None:
-    """Python 3.11's fails if two threads use it at once; it is asked again a few times."""
-    parse, left = ast.parse, [SystemError("AST constructor recursion depth mismatch")] * failures
-
-    def busy(text: str) -> ast.Module:
-        if left:
-            raise left.pop()
-        return parse(text)
-
-    monkeypatch.setattr(ast, "parse", busy)
-    if is_parsed:
-        assert ast.unparse(parsed("a = 1")) == "a = 1"
-    else:
-        with pytest.raises(ValueError, match="other threads keep Python's parser busy"):
-            parsed("a = 1")

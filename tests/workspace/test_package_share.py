@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 from graphflow.workspace import package_share
 from graphflow.workspace.package_share import share_folder
 from graphflow.workspace.packages import Package
+from tests.parser import disturb
 
 SETUP = """\
 import os
@@ -155,14 +155,7 @@ def test_too_many_files(package: Package, monkeypatch: pytest.MonkeyPatch) -> No
 
 @pytest.mark.parametrize("failures", [1, 5])
 def test_a_parser_that_other_threads_disturb(package: Package, monkeypatch: pytest.MonkeyPatch, failures: int) -> None:
-    """It is asked again, a few times."""
+    """Nothing is installed of a `setup.py` that cannot be parsed."""
     (package.folder / "setup.py").write_text(SETUP)
-    parse, left = ast.parse, [SystemError("depth mismatch")] * failures
-
-    def disturbed(text: str) -> ast.Module:
-        if left:
-            raise left.pop()
-        return parse(text)
-
-    monkeypatch.setattr(ast, "parse", disturbed)
+    disturb(monkeypatch, failures)
     assert bool([*package_share._installed(package)]) is (failures == 1)
