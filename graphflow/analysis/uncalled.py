@@ -73,7 +73,7 @@ def uncalled(source: str, file: str) -> str:
 
 
 def named_only(module: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield the lines that consist of the name of a function that would run nodes, such as `main`."""
+    """Yield the lines that consist of the name of one of the file's functions, such as `main`, each with a message."""
     functions = {node.name for node in module.body if isinstance(node, FunctionNode)}
     for node in nodes_in(module):
         match node:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from graphflow.analysis.deadlock_check import Finding, Grade
 from graphflow.analysis.rclpy_futures import dotted, polled_futures
@@ -16,10 +16,11 @@ from graphflow.errors import Place
 
 _BESIDE = re.compile(r"Thread|Timer|Process|Pool|run_in_executor|create_task|ensure_future|gather|asyncio")
 """Names of what runs beside a function."""
-_ASKING = ("call_async", "send_goal_async", "get_result_async", "cancel_goal_async")
-_PAUSES = ("sleep", "print", "ok", "done", "info", "debug", "warn", "warning", "error", "get_logger")
-"""Functions that a loop may call and that spin nothing."""
 _MAKERS = ("create_client", "create_rate")
+_ASKING = ("call_async", "send_goal_async", "get_result_async", "cancel_goal_async")
+"""Methods that return a future, which is done only after a spin."""
+_IDLE = ("sleep", "print", "ok", "done", "info", "debug", "warn", "warning", "error", "get_logger")
+"""Functions that a loop may call and that spin nothing."""
 
 
 def unspun_waits(module: ast.Module, file: str) -> Iterator[Finding]:
@@ -36,25 +37,31 @@ def unspun_waits(module: ast.Module, file: str) -> Iterator[Finding]:
 def _of(function: ast.FunctionDef, file: str) -> Iterator[Finding]:
     made = _made(function)
     for node, parents in walk(function, into_functions=False):
-        if not isinstance(node, (ast.While, ast.Call)):
-            continue
-        text = ""
-        match node:
-            case ast.While(test=test) if all(name in _PAUSES for name in _called(node)):
-                future = next((name for name in map(dotted, polled_futures(test)) if made.get(name) in _ASKING), "")
-                way = f"write rclpy.spin_until_future_complete(node, {future})"
-                text = f"the loop waits for {future}, and nothing spins meanwhile: {way}" if future else ""
-            case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="call")) if made.get(name) == _MAKERS[0]:
-                way = f"future = {name}.call_async(request), then rclpy.spin_until_future_complete(node, future)"
-                text = f"{name}.call waits for the answer, and nothing spins meanwhile: {way}"
-            case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="sleep")) if made.get(name) == _MAKERS[1]:
-                thread = "Thread(target=rclpy.spin, args=(node,), daemon=True).start()"
-                way = f"make a timer in its place, or spin in a thread before: {thread}"
-                text = f"{name}.sleep waits for a timer, and nothing spins meanwhile: {way}"
-        if text:
+        if isinstance(node, (ast.While, ast.Call)) and (text := _text(node, made)):
             is_sure = not any(isinstance(parent, (ast.If, ast.Try, ast.ExceptHandler)) for parent in parents)
             grade: Grade = "CERTAIN" if is_sure else "IF THIS BRANCH RUNS"
             yield Finding(grade, Place(file, node.lineno), f"{function.name}: {text}")
+
+
+def _text(node: ast.While | ast.Call, made: Mapping[str, str]) -> str:
+    """Describe the wait of a loop or of a call, with its remedy; "" if it is none.
+
+    Args:
+        made: See `_made`.
+    """
+    match node:
+        case ast.While(test=test) if all(name in _IDLE for name in _called(node)):
+            future = next((name for name in map(dotted, polled_futures(test)) if made.get(name) in _ASKING), "")
+            way = f"write rclpy.spin_until_future_complete(node, {future})"
+            return f"the loop waits for {future}, and nothing spins meanwhile: {way}" if future else ""
+        case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="call")) if made.get(name) == "create_client":
+            way = f"future = {name}.call_async(request), then rclpy.spin_until_future_complete(node, future)"
+            return f"{name}.call waits for the answer, and nothing spins meanwhile: {way}"
+        case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr="sleep")) if made.get(name) == "create_rate":
+            thread = "Thread(target=rclpy.spin, args=(node,), daemon=True).start()"
+            way = f"make a timer in its place, or spin in a thread before: {thread}"
+            return f"{name}.sleep waits for a timer, and nothing spins meanwhile: {way}"
+    return ""
 
 
 def _made(function: FunctionNode) -> dict[str, str]:

@@ -86,6 +86,16 @@ def users_frame(frame: FrameType | None) -> FrameType | None:
     return frame
 
 
+def variable_of(thing: object, frames: Iterable[Frame | FrameType], otherwise: str) -> str:
+    """Return the name of a local variable that holds an object, of the first frame that has one.
+
+    Args:
+        otherwise: The result if none of them has.
+    """
+    held = (name for frame in frames for name, value in list(frame.f_locals.items()) if value is thing)
+    return next(held, otherwise)
+
+
 def called_by_loop(frames: Sequence[Frame]) -> Sequence[Frame]:
     """Return the part of a stack that an event loop has called; the whole stack if no loop is in it."""
     begun = [i for i, frame in enumerate(frames) if frame.f_code in _LOOPS]

@@ -421,7 +421,7 @@ class GraphFile(_Model):
     include: IncludeBlock | list[IncludeBlock] = []
     override: dict[str, object] = {}
     deadlock: Annotated[
-        StrictStr, BeforeValidator(_one_of("deadlock", get_args(DeadlockPolicy))), _enum(get_args(DeadlockPolicy))
+        str, BeforeValidator(_one_of("deadlock", get_args(DeadlockPolicy))), _enum(get_args(DeadlockPolicy))
     ] = "raise"
     call_timeout: Annotated[Any, AfterValidator(_call_timeout)] = None
     strategy: Annotated[str, BeforeValidator(_one_of("strategy", STRATEGIES)), _enum(STRATEGIES)] = "one_for_one"

@@ -59,10 +59,11 @@ def _one(type_: FieldType, value: object, fields: Sequence[Field]) -> str | None
         part, turn = fields[0].name, ", or z for a turn" if name == "Vector3" else ""
         return f"{{{part}: {float(number)}}}, in Python {name}({part}={float(number)}){turn}"
     if not type_.is_primitive:
-        given = list(value) if type(value) is tuple else value
-        text, name = _mapping(given, fields), type_.base.rpartition("/")[2]
-        is_of_python = type(value) is tuple and text is not None
-        return f"{name}({text[1:-1].replace(': ', '=')})" if is_of_python and text is not None else text
+        if type(value) is not tuple:
+            return _mapping(value, fields)
+        text = _mapping(list(value), fields)
+        name = type_.base.rpartition("/")[2]
+        return None if text is None else f"{name}({text[1:-1].replace(': ', '=')})"
     if type(value) is list:
         return _scalar(type_, value[0]) if len(value) == 1 else None
     return _scalar(type_, value)

@@ -83,5 +83,5 @@ def test_programs_in_which_something_else_may_spin(before: str) -> None:
     ],
 )
 def test_other_calls(body: str) -> None:
-    """What spins, or is no client's or rate's, is left alone."""
+    """Calls that spin, and those of other things than clients and rates, are left alone."""
     assert found(body) == []

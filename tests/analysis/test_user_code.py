@@ -17,7 +17,7 @@ import pytest
 import graphflow
 from graphflow import Node, Qos, names
 from graphflow.analysis.frames import Frame, running
-from graphflow.analysis.user_code import Pause, innermost, is_users, place_in, users_part, where
+from graphflow.analysis.user_code import Pause, innermost, is_users, place_in, users_part, variable_of, where
 from graphflow.errors import Place
 
 STDLIB = Path(sysconfig.get_path("stdlib"))
@@ -67,6 +67,19 @@ def test_the_innermost_line_of_the_users() -> None:
     assert innermost([*frames, library[0]]) is frames[-1]
     assert innermost(library) is None
     assert innermost([]) is None
+
+
+def test_the_variable_that_holds_an_object() -> None:
+    """It is that of the first frame with one."""
+    held = object()
+
+    def frame(_: object) -> FrameType:
+        return sys._getframe()
+
+    here, there, nowhere = sys._getframe(), frame(held), frame(None)
+    assert variable_of(held, [nowhere, here, there], "it") == "held"
+    assert variable_of(held, [there, here], "it") == "_"
+    assert variable_of(held, [nowhere], "it") == "it"
 
 
 class Driver:

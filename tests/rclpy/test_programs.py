@@ -128,7 +128,7 @@ def test_what_a_package_has_not_is_told(workspace: Path) -> None:
 
 
 def test_another_package_with_the_same_modules(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """What runs instead is named, and so is a copy of the package that is not used."""
+    """The file that runs instead is named, and so is a copy of the package that is not used."""
     found = find_program("lamp", ["lamp"], workspace)
     assert found is not None
     _note_other(found, str(found.file))

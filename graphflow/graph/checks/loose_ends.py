@@ -197,8 +197,8 @@ def _of_nodes(ends: list[_End], sure: set[str]) -> Iterator[tuple[str, Problem]]
         others = _others(end, ends)
         if end.name in others or end.name in _EVERYWHERE:
             continue
-        sure_there = sure if end.kind in ("publisher", "subscription") else set[str]()
-        near = _nearest(end.name, (others | sure_there) - {same.name for same in ends if same.kind == end.kind})
+        topics = sure if end.kind in ("publisher", "subscription") else set[str]()
+        near = _nearest(end.name, (others | topics) - {same.name for same in ends if same.kind == end.kind})
         if near not in reported if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:
             reported.add(end.name)
             yield end.name, Problem(end.remapped_at or end.place, _text(end, near))

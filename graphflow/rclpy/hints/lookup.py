@@ -92,7 +92,8 @@ def _attribute(error: BaseException, frames: list[FrameType]) -> str:
     if thing is None and ".result()" in line_of(frames):
         return "future.result() is None until the future is done: add_done_callback(...), or spin until it is"
     if type(thing).__name__ in ("Future", "Run", "Task") and not is_defined_by_user(type(thing)):
-        if frames and own(frames) and own(frames)[-1].f_code.co_flags & inspect.CO_COROUTINE:
+        users = own(frames)
+        if users and users[-1].f_code.co_flags & inspect.CO_COROUTINE:
             return f"it is in the answer: write await before the call that returns the future, and .{name} of that"
         return f"it is in the answer: future.result().{name}, once the future is done: add_done_callback(...)"
     if type(thing).__name__ in ("ServerGoalHandle", "ClientGoalHandle") and not is_defined_by_user(type(thing)):

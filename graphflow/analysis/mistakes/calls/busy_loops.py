@@ -15,12 +15,12 @@ def busy_loops(code: ast.AST) -> Iterator[tuple[int, str]]:
     """Find the lines of such loops; each comes with a sentence."""
     for loop, parents in walk(code):
         if isinstance(loop, ast.While):
-            method = next((one for one in reversed(parents) if isinstance(one, FunctionNode)), None)
-            yield from _without_pause(loop, method)
+            around = next((one for one in reversed(parents) if isinstance(one, FunctionNode)), None)
+            yield from _without_pause(loop, around)
             yield from _between_spins(loop)
 
 
-def _without_pause(loop: ast.While, method: FunctionNode | None) -> Iterator[tuple[int, str]]:
+def _without_pause(loop: ast.While, around: FunctionNode | None) -> Iterator[tuple[int, str]]:
     match loop.body:
         case [ast.Expr(value=ast.Await(value=ast.Call(func=ast.Attribute(attr="sleep") as sleep, args=[time])))]:
             if _number(time) == 0:
@@ -34,7 +34,7 @@ def _without_pause(loop: ast.While, method: FunctionNode | None) -> Iterator[tup
                 yield loop.lineno, f"{text}; leave out timeout_sec, so that spin_once waits for a callback"
         case [ast.Pass()] if _only_reads(loop.test):
             text = "this loop never pauses, and nothing else runs in its thread"
-            yield loop.lineno, f"{text}; {_way_to_wait(method)}"
+            yield loop.lineno, f"{text}; {_way_to_wait(around)}"
 
 
 def _way_to_wait(function: FunctionNode | None) -> str:

@@ -8,22 +8,23 @@ from collections.abc import Iterator
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in
 
 _CLASSES = ("SingleThreadedExecutor", "MultiThreadedExecutor", "EventsExecutor")
+"""The classes of rclpy's executors."""
 
 
 def idle_executors(module: ast.Module) -> Iterator[tuple[int, str]]:
     """Find the calls of `rclpy.spin` beside an executor that only gets nodes; each with what to write."""
     for function in nodes_in(module):
         if isinstance(function, FunctionNode):
-            made = _made(function)
+            idle = _idle(function)
             for node in nodes_in(function):
                 match node:
-                    case ast.Call(func=spin, args=[given], keywords=[]) if made and ast.unparse(spin) == "rclpy.spin":
-                        name, kind = next(iter(made.items()))
+                    case ast.Call(func=spin, args=[given], keywords=[]) if idle and ast.unparse(spin) == "rclpy.spin":
+                        name, kind = next(iter(idle.items()))
                         text = f"rclpy.spin does not use the {kind} in {name}"
                         yield node.lineno, f"{text}: write rclpy.spin({ast.unparse(given)}, {name})"
 
 
-def _made(function: ast.AST) -> dict[str, str]:
+def _idle(function: ast.AST) -> dict[str, str]:
     """Return the names of the executors that a function makes and never spins, with their classes."""
     made: dict[str, str] = {}
     added: set[ast.AST] = set()

@@ -13,7 +13,7 @@ from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, last_name, nodes_in, walk
 
 _CALLED_BACK = {"create_timer": "timer", "create_subscription": "subscription"}
-_SHOWING = ("debug", "info", "warn", "warning", "error")
+_LEVELS = ("debug", "info", "warn", "warning", "error")
 _LOGGERS = ("get_logger", "log", "logger")
 _KINDS = {**_CALLED_BACK, "timer": "timer", "subscription": "subscription"}
 
@@ -75,10 +75,8 @@ def _unread(method: FunctionNode, attributes: set[str], later: set[str]) -> Iter
                 ast.Assign(targets=[ast.Name(id=name)], value=value)
                 | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value)
             ) if name in attributes - known and _is_pure(value) and ast.unparse(value) != f"self.{name}":
-                text, reader = (
-                    f"{name} = {ast.unparse(value)}",
-                    "only a log reads" if name in shown else "nothing reads",
-                )
+                text = f"{name} = {ast.unparse(value)}"
+                reader = "only a log reads" if name in shown else "nothing reads"
                 yield node.lineno, f"{text} sets a local variable, which {reader}; write self.{text}"
 
 
@@ -87,7 +85,7 @@ def _is_shown(parent: ast.AST) -> bool:
     match parent:
         case ast.Call(func=ast.Name(id="print"), keywords=[]):
             return True
-        case ast.Call(func=ast.Attribute(value=owner, attr=name)) if name in _SHOWING:
+        case ast.Call(func=ast.Attribute(value=owner, attr=name)) if name in _LEVELS:
             return last_name(owner.func if isinstance(owner, ast.Call) else owner) in _LOGGERS
     return False
 

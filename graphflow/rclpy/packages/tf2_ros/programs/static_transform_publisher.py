@@ -25,8 +25,6 @@ from rclpy.utilities import remove_ros_args
 
 METRES, TURNS, PARTS = ("x", "y", "z"), ("roll", "pitch", "yaw"), ("qx", "qy", "qz", "qw")
 """The numeric options: a translation, and a rotation in radians or as a quaternion."""
-
-
 _FORMS = (
     "the old form is X Y Z YAW PITCH ROLL PARENT CHILD, or X Y Z QX QY QZ QW PARENT CHILD; the new one names what is "
     "not 0: --z 0.2 --frame-id base_link --child-frame-id laser"

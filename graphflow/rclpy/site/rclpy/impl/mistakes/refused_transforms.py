@@ -10,7 +10,7 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
-from graphflow.analysis.user_code import short_place, users_frame
+from graphflow.analysis.user_code import short_place, users_frame, variable_of
 from graphflow.errors import Place
 from graphflow.tf.faults import TOLERANCE
 
@@ -35,8 +35,7 @@ def check(transform: TransformStamped) -> None:
     if place not in _reported:
         _reported.add(place)
         wrong, way = fault
-        own = next((name for name, thing in caller.f_locals.items() if thing is transform), "transform")
-        way = way.replace("transform.", f"{own}.")
+        way = way.replace("transform.", f"{variable_of(transform, [caller], 'transform')}.")
         logger.warning("%s: %s, and every listener drops it; %s", place, wrong, way)
 
 

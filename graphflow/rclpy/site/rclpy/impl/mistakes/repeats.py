@@ -61,8 +61,9 @@ def count(node: Node, call: str, made: Any) -> None:
         _warn_of_same(node, made, place)
     is_again = is_in_run(asked.frame)
     is_once = asked.frame.f_code.co_name == "__init__" and not is_again
-    origin = Origin(place, asked.frame.f_code, made if is_once and kind == "timers" else _name(made, is_again=is_again))
-    made.made_at = origin
+    # A constructor makes as many timers as it wants, so each counts as one of its own.
+    name = made if is_once and kind == "timers" else _name(made, is_again=is_again)
+    made.made_at = origin = Origin(place, asked.frame.f_code, name)
     if call in ("create_subscription", "create_service", "create_timer"):
         warn_of_hiding(node, made, asked.frame.f_code, _with_callbacks(node))
     alike = [other for other in getattr(internals_of(node), kind) if other.made_at == origin and _is_alive(other)]
@@ -72,9 +73,9 @@ def count(node: Node, call: str, made: Any) -> None:
         if len(alike) < MANY_APART and kind == "timers" and len(set(map(_bound, alike))) == len(alike):
             return  # each is for something else, such as one turtle of several
         _reported.add(place)
-        name, what = node.get_fully_qualified_name(), f"{kind}{_of(made)}"
+        owner, what = node.get_fully_qualified_name(), f"{kind}{_of(made)}"
         way = f"create one in __init__, and keep it in an attribute{_for_delay(made)}"
-        logger.warning("%s has %d %s created in %s: %s", name, len(alike), what, place, way)
+        logger.warning("%s has %d %s created in %s: %s", owner, len(alike), what, place, way)
 
 
 def _with_callbacks(node: Node) -> list[Timer | Subscription | Service]:

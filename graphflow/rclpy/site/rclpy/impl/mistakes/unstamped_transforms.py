@@ -10,7 +10,7 @@ import logging
 import sys
 from typing import TYPE_CHECKING
 
-from graphflow.analysis.user_code import short_place, users_frame
+from graphflow.analysis.user_code import short_place, users_frame, variable_of
 from graphflow.errors import Place
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class Unstamped:
         place = short_place(caller.f_code.co_filename, caller.f_lineno)
         if place not in _reported:
             _reported.add(place)
-            name = next((name for name, thing in caller.f_locals.items() if thing is transform), "transform")
+            name = variable_of(transform, [caller], "transform")
             logger.warning(
                 "%s: the transforms of %r have no stamp, so that listeners take all of them for the same moment; write "
                 "%s.header.stamp = self.get_clock().now().to_msg() before",

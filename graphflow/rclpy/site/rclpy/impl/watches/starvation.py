@@ -18,7 +18,7 @@ from weakref import WeakSet
 
 from graphflow.analysis.frames import Frame
 from graphflow.analysis.syntax import loops_at, nodes_in, syntax_of
-from graphflow.analysis.user_code import is_ours, is_users, short_place, where
+from graphflow.analysis.user_code import is_ours, is_users, short_place, variable_of, where
 from graphflow.errors import Place
 from graphflow.rclpy.wake import Wake
 from rclpy.action.client import ActionClient
@@ -232,8 +232,7 @@ def _polls(level: Level, node: Node) -> bool:
 def _name_of(level: Level, node: Node) -> str:
     """Return the name of the variable that holds a node, as code would use it there."""
     users = [frame for frame in level.frames if is_users(frame.f_code.co_filename)]
-    held = ((name, thing) for frame in reversed(users) for name, thing in list(frame.f_locals.items()))
-    return next((name for name, thing in held if thing is node), "node")
+    return variable_of(node, reversed(users), "node")
 
 
 def _loops(level: Level) -> Iterator[ast.For | ast.While]:

@@ -263,15 +263,22 @@ def test_a_node_that_nobody_spins(node: Node, caplog: Caplog) -> None:
     assert over.startswith("/node is spun after ")
 
 
-def test_a_program_that_waits_for_a_callback(node: Node, caplog: Caplog) -> None:
+def test_a_program_that_waits_for_a_callback(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
     """It polls what a callback sets: told, although no message has come."""
+    monkeypatch.setattr(starvation, "time", clock := ManualTime())
     listener = Listener()
 
+    def is_told() -> bool:
+        clock.advance(0.01)
+        return bool(told(caplog))
+
     def call_later() -> None:
-        until(lambda: told(caplog))
+        until(is_told)
         listener.hear(String())
 
-    time.sleep(0.4)
+    look()
+    clock.advance(0.5)
+    look()
     assert told(caplog) == []
     with in_thread(call_later):
         listener.wait()

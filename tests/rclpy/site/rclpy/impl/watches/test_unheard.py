@@ -55,7 +55,7 @@ def test_what_is_kept_for_late_subscriptions(node: Node, caplog: Caplog, is_hear
 
 @pytest.mark.parametrize("is_latched", [True, False])
 def test_a_program_that_is_interrupted(node: Node, caplog: Caplog, is_latched: bool) -> None:
-    """Whoever has stopped it knows that it has ended."""
+    """Nothing is told: the user has stopped it."""
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
     node.create_publisher(String, "chat", latched if is_latched else 10).publish(String())
     for _ in range(2):
