@@ -101,6 +101,9 @@ class Parameter:
         match value:
             case str() if self.type == "bool" and value.lower() in _TRUTHS:
                 return f"write {_TRUTHS[value.lower()]}: {value} is a text in YAML 1.2"
+            case int() | float() if self.type == "str":
+                text = f"'{str(value).lower() if isinstance(value, bool) else value}'"
+                return f'write {text}, with the quotes; in a shell "{text}"'
             case str() if plain(value) != value:
                 return f"write {plain(value)}"
             case float() if self.type == "int" and value.is_integer():

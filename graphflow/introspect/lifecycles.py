@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from graphflow.errors import CallError
 from graphflow.introspect.graph_view import View
 from graphflow.machines.cache import GraphCache
-from graphflow.machines.lifecycle import LifecycleState
+from graphflow.machines.lifecycle import LifecycleState, commands
 from graphflow.names import is_hidden
 from graphflow.wire.liveliness import Kind
 
@@ -64,11 +64,9 @@ def idle(view: View, timeout: float, among: Container[str] | None = None) -> Idl
             now = LifecycleState(state(view, node, timeout).id) if time.monotonic() < end else None
         except (CallError, ValueError):
             now = None
-        steps = {LifecycleState.UNCONFIGURED: ("configure", "activate"), LifecycleState.INACTIVE: ("activate",)}
         if now is None:
             found.unknown.append(node)
-        elif now in steps:
-            way = " && ".join(f"graphflow lifecycle set {node} {step}" for step in steps[now])
+        elif way := commands(node, now):
             found.hints.append(f"{node} is {now.label}, not active: {way}")
     return found
 

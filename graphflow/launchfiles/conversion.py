@@ -25,7 +25,7 @@ from graphflow.launchfiles.attributes import words as words_of
 from graphflow.launchfiles.bodies import add, extend, put
 from graphflow.launchfiles.commands import one_word_fault, plain_words, step_of, typed
 from graphflow.launchfiles.components import KNOWN, components
-from graphflow.launchfiles.known_actions import CONDITIONS, FORMER, RECORDED, SAME, is_known
+from graphflow.launchfiles.known_actions import CONDITIONS, FORMER, RECORDED, SAME, is_known, no_action
 from graphflow.launchfiles.recorded import Action
 from graphflow.launchfiles.settings import as_text, conditional, conditions, pair, params, ros_arguments, setting
 from graphflow.markup.source import Complain, Data, Scalar
@@ -129,8 +129,7 @@ class _Translation:
         body: dict[str, Item] = {}
         for i, action in enumerate(actions):
             if not isinstance(action.value, dict) or len(action.value) != 1:
-                text = "expected an action, for example node: {pkg: turtlesim, exec: turtlesim_node}"
-                self._complain(action.place, f"{text}, got {action.plain()!r}")
+                self._complain(action.place, no_action(action))
                 continue
             [(written, item)] = action.entries.items()
             name = SAME.get(written, written)

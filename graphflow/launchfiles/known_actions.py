@@ -59,6 +59,14 @@ FORMER = {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespa
 """Attributes by their names in launch files in Python, and in some of ROS 1."""
 
 
+def no_action(item: Item) -> str:
+    """Return the fault of an item of a list of actions that is none."""
+    for name, attributes in item.entries.items():
+        if attributes.value is None and SAME.get(name, name) in _KNOWN:
+            return f"the attributes of {name}: stand below it: indent them further than {name}:"
+    return f"expected an action, for example node: {{pkg: turtlesim, exec: turtlesim_node}}, got {item.plain()!r}"
+
+
 def is_known(name: str, item: Item, complain: Complain) -> bool:
     """Check an action; returns whether it can be converted, perhaps without some of its attributes.
 

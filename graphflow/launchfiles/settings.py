@@ -88,7 +88,11 @@ def pair(item: Item, key: str, value: str, complain: Complain, *, is_written: bo
     """
     name = item.entries.get(key)
     if name is None or not isinstance(name.value, str):
-        complain(item.at, f"the attribute {key!r} is missing; one is written {key}: ..., {value}: ...")
+        way = f"one is written {key}: ..., {value}: ..."
+        if len(item.entries) == 1 and value not in item.entries:
+            [(written, meant)] = item.entries.items()
+            way = f"write {{{key}: {written}, {value}: {meant.plain()}}}"
+        complain(item.at, f"the attribute {key!r} is missing; {way}")
         return Item({}, item.place)
     found = item.entries.get(value, Item("", item.place))
     # With a value, an unknown attribute is reported elsewhere; without, it was probably meant as the value.

@@ -153,3 +153,13 @@ def path(state: LifecycleState, target: LifecycleState) -> list[str]:
     if state.level <= target.level:
         return list(up[state.level : target.level])
     return list(reversed(down[target.level : state.level]))
+
+
+def commands(node: str, state: LifecycleState, target: LifecycleState = LifecycleState.ACTIVE) -> str:
+    """Return the command lines that bring a node from its state to another; empty if there are none.
+
+    Args:
+        node: The node's full name.
+    """
+    steps = path(state, target) if state.is_primary else []
+    return " && ".join(f"graphflow lifecycle set {node} {step}" for step in steps)

@@ -55,7 +55,8 @@ def evaluate(text: str, names: Mapping[str, Data]) -> Data:
         ast.parse(text.strip(), mode="eval")  # simpleeval would accept a statement, too
         return _bounded(evaluator.eval(text.strip()))
     except simpleeval.NameNotDefined as error:
-        raise ExpressionError(f"{error.name!r} is no argument{did_you_mean(error.name, names)}") from None
+        near = did_you_mean(error.name, names) or f"; a text is written in quotes: {error.name!r}"
+        raise ExpressionError(f"{error.name!r} is no argument{near}") from None
     except simpleeval.FunctionNotDefined as error:
         hint = "write the argument's name alone" if error.func_name == "arg" else f"there are {', '.join(FUNCTIONS)}"
         raise ExpressionError(f"there is no function {error.func_name!r}; {hint}") from None
@@ -67,6 +68,20 @@ def evaluate(text: str, names: Mapping[str, Data]) -> Data:
         raise ExpressionError("nested too deep") from None
     except (simpleeval.InvalidExpression, ArithmeticError, TypeError, ValueError, LookupError) as error:
         raise ExpressionError(str(error) or type(error).__name__) from None
+
+
+def with_quotes(expression: str) -> str:
+    """Put quotes around the names in an expression that have no value there, as if they were texts."""
+    if not expression.isascii():  # columns of the syntax tree count bytes
+        return expression
+    try:
+        tree = ast.parse(expression, mode="eval")
+    except SyntaxError:
+        return expression
+    named = [node for node in ast.walk(tree) if isinstance(node, ast.Name) and node.id not in _KNOWN]
+    for node in sorted(named, key=lambda node: node.col_offset, reverse=True):
+        expression = f"{expression[: node.col_offset]}{node.id!r}{expression[node.end_col_offset :]}"
+    return expression
 
 
 def _bounded(value: Any) -> Data:
@@ -126,3 +141,4 @@ FUNCTIONS: dict[str, Callable[..., object]] = {
 """The functions of expressions."""
 _MATH = {**{name: function for name, function in FUNCTIONS.items() if hasattr(math, name)}, "pi": math.pi, "e": math.e}
 """The module `math`, as expressions of launch files name it."""
+_KNOWN = {*FUNCTIONS, "math", "true", "false", "pi"}

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from graphflow.markup import ros1_words
 from graphflow.markup.copies import copy_of
-from graphflow.markup.expressions import ExpressionError, evaluate
+from graphflow.markup.expressions import ExpressionError, evaluate, with_quotes
 from graphflow.markup.param_types import as_type, from_yaml
 from graphflow.markup.source import Data, scalar
 from graphflow.markup.substitution_words import UnclosedError, Word, as_word, quoted, spans, words
@@ -173,7 +173,7 @@ class Substitutions:
         if any(
             isinstance(self._args[name], Written) for name in found
         ):  # arguments of a launch file: ROS has no names in expressions
-            expression = _VALUES.sub(r"'$(var \2)'", expression).replace('"', "'")
+            expression = with_quotes(_VALUES.sub(r"'$(var \2)'", expression).replace('"', "'"))
             pieces = re.sub(r"\$\(var (\w+)\)", r'", LaunchConfiguration("\1"), "', expression)
             return f'; write $(eval "{expression}"), in Python PythonExpression(["{pieces}"])'
         expression = _VALUES.sub(lambda value: value[2], expression)

@@ -98,6 +98,23 @@ nodes:
         ),
         ("include: sub/base.yaml\noverride: {/a: {parms: {}}}\n", r"over.yaml:2:17: unknown key 'parms'; did you mean"),
         ("include: sub/base.yaml\nnodes: {/a: {class: x:Y}}\n", r"over.yaml:2:9: /a is already in the included file"),
+        (
+            "include: {file: sub/base.yaml, namespace: /robot}\n",
+            r"over.yaml:1:43: every name in sub/base.yaml begins with a slash, so the namespace has no effect; leave",
+        ),
+        (
+            "include: [{file: sub/base.yaml, namespace: /r}, {file: sub/base.yaml, namespace: /s}]\n",
+            r"this makes the node /a more than once: .* or leave out its slash and give each include: of this file a ",
+        ),
+        (
+            "nodes: {/a: {class: x:Y}}\ngroup: {include: sub/base.yaml}\n",
+            r"/a is already at .*over.yaml:1:9; give one of them another name, or one include: a namespace",
+        ),
+        (
+            "include: [sub/base.yaml]\noverride: {/a: {env: {}}}\n",
+            r"over.yaml:2:1: override: with a list of files, .* as in - {file: FILE, override: ...}",
+        ),
+        ("include: sub/base.yaml\noverride: {/a: {enabled: no}}\n", r"unknown key 'enabled'; if: false leaves out a"),
         ("include: [3]\nnodes: {}\n", r"over.yaml:1:11: include: expected a mapping, got 3, for example include: base"),
         ("include: {fil: x}\nnodes: {}\n", r"over.yaml:1:11: unknown key 'fil'; did you mean 'file'?"),
         ("override: {}\nnodes: {/a: {class: x:Y}}\n", r"over.yaml:1:1: override: goes with include:"),

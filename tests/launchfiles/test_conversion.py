@@ -274,6 +274,11 @@ def test_lifecycle_nodes() -> None:
             "a: 1, b: 2",
             "f.yaml:1:10: expected an action, for example node: {pkg: turtlesim, exec: turtlesim_node}, got",
         ),
+        ("node: , pkg: a", "f.yaml:1:10: the attributes of node: stand below it: indent them further than node:"),
+        (
+            "node: {pkg: a, exec: b, remap: [{c: d}]}",
+            "f.yaml:1:43: the attribute 'from' is missing; write {from: c, to: d}",
+        ),
         ("node_container: {}", "f.yaml:1:11: the attribute 'name' or 'target' is missing"),
         (
             "node_container: {name: c, composable_node: [{pkg: composition, plugin: 'a::Talkr'}]}",

@@ -11,6 +11,7 @@ from graphflow.machines.lifecycle import (
     after,
     asked,
     available,
+    commands,
     path,
 )
 from graphflow.msgs.lifecycle_msgs.msg import State, Transition
@@ -99,6 +100,15 @@ def test_the_path_leads_there(start: LifecycleState, target: LifecycleState) -> 
         assert transition is not None
         state = after(transition.goal, Outcome.SUCCESS).goal
     assert state is (start if start is LifecycleState.FINALIZED else target)
+
+
+def test_commands() -> None:
+    """Each line is one that a shell takes; a hook that runs, and an end, leave nothing to type."""
+    both = "graphflow lifecycle set /camera configure && graphflow lifecycle set /camera activate"
+    assert commands("/camera", LifecycleState.UNCONFIGURED) == both
+    down = commands("/camera", LifecycleState.ACTIVE, LifecycleState.INACTIVE)
+    assert down == "graphflow lifecycle set /camera deactivate"
+    assert [commands("/camera", s) for s in (LifecycleState.ACTIVATING, LifecycleState.FINALIZED)] == ["", ""]
 
 
 def test_labels_are_those_of_ros() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from graphflow.markup.expressions import ExpressionError, evaluate
+from graphflow.markup.expressions import ExpressionError, evaluate, with_quotes
 from graphflow.markup.source import Data
 
 NAMES: dict[str, Data] = {"count": 3, "mode": "sim", "turtle": {"name": "leo", "x": 1.5}, "ids": [4, 5]}
@@ -44,6 +44,7 @@ def test_values(text: str, value: Any) -> None:
     ("text", "message"),
     [
         ("cont * 2", "'cont' is no argument; did you mean 'count'?"),
+        ("mode == real", "'real' is no argument; a text is written in quotes: 'real'"),
         ("arg('x') == 1", "there is no function 'arg'; write the argument's name alone"),
         ("exec('x')", "there is no function 'exec'; there are abs, bool"),
         ("count.real", "nothing called 'real' is in 3"),
@@ -74,3 +75,17 @@ def test_what_is_refused(text: str, message: str) -> None:
     with pytest.raises(ExpressionError, match=message):
         evaluate(text, NAMES)
     assert time.monotonic() - began < 60.0  # it has not been computed: that would take hours
+
+
+@pytest.mark.parametrize(
+    ("text", "quoted"),
+    [
+        ("'real' == sim or real != 'a'", "'real' == 'sim' or 'real' != 'a'"),
+        ("math.pi * max(1, pi) > 3 and true", "math.pi * max(1, pi) > 3 and true"),
+        ("sim ==", "sim =="),
+        ("'\u00e9' == sim", "'\u00e9' == sim"),
+    ],
+)
+def test_texts_without_quotes(text: str, quoted: str) -> None:
+    """Names of nothing are texts; what cannot be parsed stays."""
+    assert with_quotes(text) == quoted

@@ -26,6 +26,7 @@ _OF_NODES = {
     "launch-prefix": ("prefix", ""),
     "condition": ("if", ""),
     "when": ("if", ""),
+    **dict.fromkeys(("enabled", "enable", "disabled", "disable"), ("if", "if: false leaves out a node")),
     "plugin": ("class", ""),
     "node": ("class", ""),
     "env_vars": ("env", ""),

@@ -133,9 +133,8 @@ class Expansion:
         if overridden is not None and "include" not in entries:
             self._problems.add(overridden.at, "override: goes with include:, whose nodes it changes")
         elif overridden is not None and isinstance(entries["include"].value, list):
-            self._problems.add(
-                overridden.at, "override: with several files, write it at the one whose nodes it changes"
-            )
+            way = "write it at the one whose nodes it changes, as in - {file: FILE, override: ...}"
+            self._problems.add(overridden.at, f"override: with a list of files, {way}")
 
     def _take_settings(self, entries: Mapping[str, Item], scope: Scope) -> None:
         """Keep a file's settings of the whole graph, which replace those of the files that it includes."""
@@ -179,7 +178,13 @@ class Expansion:
             namespace=self._namespace(block, scope),
             is_top=scope.is_top and not block.entries.keys() & {"args", "namespace"},
         )
+        relative = self._relative  # unchanged afterwards if no name in the file depends on a namespace
         templates = self._file(top, path, inner, block.entries["args"].entries if model.args else {})
+        if "namespace" in block.entries and self._relative == relative and set(self.nodes) - before:
+            text = (
+                f"every name in {model.file} begins with a slash, so the namespace has no effect; leave the slashes out"
+            )
+            self._problems.add_unless_ros(block.entries["namespace"].place, f"{text} there")
         changes = [o for o in (block.entries.get("override"), overridden) if o is not None]
         for change in changes:
             self._override(self._values.substituted(change, scope), set(self.nodes) - before, scope)
@@ -331,7 +336,7 @@ class Expansion:
             taken, name = name, next(free for n in count(2) if (free := f"{name}_{n}") not in self.nodes)
             if not item.entries.keys() & {"keep_names", "command"}:  # else the name is that of the process alone
                 self._problems.add_unless_ros(item.at, f"there is a node {taken} already; this one is called {name}")
-        if self._is_taken(name, item, self.nodes, "nodes"):
+        if self._is_taken(name, item, scope, self.nodes, "nodes"):
             return
         with self._problems.of_node(name):
             item = self._values.substituted(
@@ -384,7 +389,7 @@ class Expansion:
         if self._values.is_left_out(item, scope):
             self.left_out[name] = item.at
             return
-        if self._is_taken(name, item, self.steps, "steps"):
+        if self._is_taken(name, item, scope, self.steps, "steps"):
             return
         item = after_groups(self._values.substituted(item.without("if", "unless"), scope, texts=_TEXTS), scope.shared)
         for key in ("call", "set", "goal", "wait"):
@@ -402,18 +407,23 @@ class Expansion:
         self.steps[name] = item
         self.written[name] = (name, scope.namespace)
 
-    def _is_taken(self, name: str, item: Item, those: Mapping[str, Item], what: str) -> bool:
+    def _is_taken(self, name: str, item: Item, scope: Scope, those: Mapping[str, Item], what: str) -> bool:
         if name not in those:
             return False
         first = those[name].at
         if first.file != item.at.file:
-            if what == "nodes":
+            if what == "nodes" and len(scope.files) == 1:
                 text = f"{name} is already in the included file; change it under override:"
+            elif what == "nodes":
+                text = f"{name} is already at {first}; give one of them another name, or one include: a namespace"
             else:
                 text = f"there is a step {name!r} already, at {first}; give this one another name"
         elif first == item.at:
-            text = f"this makes the {what[:-1]} {name} more than once: put the loop's variable into its name, or give "
-            text += "each include: of this file a namespace of its own"
+            slash = (
+                "leave out its slash and " if scope.namespace != "/" and self.written[name][0].startswith("/") else ""
+            )
+            text = f"this makes the {what[:-1]} {name} more than once: put the loop's variable into its name, or "
+            text += f"{slash}give each include: of this file a namespace of its own"
         else:
             text = f"there are two {what} {name}; the other is on line {first.line}"
         self._problems.add(item.at, text)

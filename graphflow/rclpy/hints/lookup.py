@@ -29,7 +29,15 @@ from graphflow.rclpy.hints.fields import (
     wrong_value,
 )
 from graphflow.rclpy.hints.frames import PATH, is_defined_by_user, lacking, line_of, named, own
-from graphflow.rclpy.hints.names import missing_name, misspelt_init, module_as_class, severity, unknown_name, unset
+from graphflow.rclpy.hints.names import (
+    missing_name,
+    misspelt_init,
+    module_as_class,
+    severity,
+    unknown_name,
+    unset,
+    without_value,
+)
 from graphflow.rclpy.hints.pending import early_result
 from graphflow.rclpy.hints.tables import ATTRIBUTES, TEXTS
 from graphflow.rclpy.messages.classes import StrictMessage
@@ -181,6 +189,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     unknown_name,
     early_result,
     unset,
+    without_value,
     misspelt_init,
     module_as_class,
     severity,

@@ -202,6 +202,18 @@ def unset(error: BaseException, frames: list[FrameType]) -> str:
     return ""
 
 
+def without_value(error: BaseException, frames: list[FrameType]) -> str:
+    """Name a parameter that was declared without a value where None, its value, fits no operation."""
+    users = own(frames)
+    if not isinstance(error, TypeError) or "NoneType" not in str(error) or not users:
+        return ""
+    parameters = users[-1].f_locals["self"].get_parameters_by_prefix("")
+    for name in re.findall(r"\w+", line_of(frames)):
+        if name in parameters and parameters[name].value is None:
+            return f"the parameter {name!r} has no value: declare it with one, declare_parameter({name!r}, 1.0)"
+    return ""
+
+
 def _unset_yet(error: AttributeError, frame: FrameType) -> str:
     """Name the callback that sets an attribute which a node does not have yet."""
     node = frame.f_locals.get("self")

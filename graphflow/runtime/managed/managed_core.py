@@ -19,6 +19,7 @@ from graphflow.machines.lifecycle import (
     after,
     asked,
     available,
+    commands,
     path,
 )
 from graphflow.msgs import registry
@@ -127,9 +128,8 @@ class ManagedCore(NodeCore):
     # activation
 
     def _why(self) -> str:
-        steps = path(self.state, LifecycleState.ACTIVE) if self.state.is_primary else []
-        hint = f"; graphflow lifecycle set {self.full_name} {steps[0]}" if steps else ""
-        return f"{self.full_name} is {self.state.label}, not active{hint}"
+        way = commands(self.full_name, self.state)
+        return f"{self.full_name} is {self.state.label}, not active{f'; {way}' if way else ''}"
 
     def _hold(self, part: Part) -> Runner | None:
         return None if part.is_inner else part.pause(self._why())
@@ -174,7 +174,7 @@ class ManagedCore(NodeCore):
         steps = path(self.state, self.target or LifecycleState.ACTIVE)
         if self.target is None and steps:
             way = "or write lifecycle: active in a graph file"
-            self.log.info("%s: graphflow lifecycle set %s %s, %s", self.state.label, self.full_name, steps[0], way)
+            self.log.info("%s: %s, %s", self.state.label, commands(self.full_name, self.state), way)
         elif self.target is not None:
             for label in steps:
                 await self.trigger(label)

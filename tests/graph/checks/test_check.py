@@ -104,7 +104,10 @@ def test_what_fits_is_no_problem(line: str) -> None:
             "1.0 in code.py:1",
         ),
         ("params: {count: true}", "4:21: parameter 'count' is of type integer, True is not"),
-        ("params: {name: 3}", "4:20: parameter 'name' is of type string, 3 is not"),
+        (
+            "params: {name: 3}",
+            """4:20: parameter 'name' is of type string, 3 is not; write '3', with the quotes; in a shell "'3'\"""",
+        ),
         (
             "params: {count: 0.5}",
             "4:21: parameter 'count' is of type integer, 0.5 is not; "

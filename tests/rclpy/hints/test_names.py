@@ -111,6 +111,13 @@ LAMPS = [
         "def tick(self):\n    from array import array\n    near = array('f', [1.0]) < 2.0",
         "that is a whole array: compare an element, as in ranges[0], or min(ranges)",
     ),
+    (
+        "def tick(self):\n    from rcl_interfaces.msg import ParameterDescriptor\n"
+        "    self.declare_parameter('rate', None, ParameterDescriptor(dynamic_typing=True))\n"
+        "    rate = self.get_parameter('rate').value\n    1.0 / rate",
+        "the parameter 'rate' has no value: declare it with one, declare_parameter('rate', 1.0)",
+    ),
+    ("def tick(self):\n    rate = None\n    1.0 / rate", ""),
     ("print(Lamp)", "this line is inside class Lamp: indent it less"),
 ]
 

@@ -176,7 +176,7 @@ async def test_what_is_published_while_not_active_is_told(graph: Graph, caplog: 
     told = [r.getMessage() for r in caplog.records if "not sent" in r.getMessage()]
     assert told == [
         "what is published on /image is not sent: /camera is unconfigured, not active; "
-        "graphflow lifecycle set /camera configure"
+        "graphflow lifecycle set /camera configure && graphflow lifecycle set /camera activate"
     ]
     assert not node.image.is_wanted
     assert len(pictures) == 0
@@ -531,7 +531,8 @@ async def test_an_unconfigured_node_says_what_to_do(graph: Graph, caplog: pytest
     """A warning has the next step."""
     with caplog.at_level("INFO"):
         await graph.start(Camera())
-    assert "unconfigured: graphflow lifecycle set /camera configure" in caplog.text
+    way = "graphflow lifecycle set /camera configure && graphflow lifecycle set /camera activate"
+    assert f"unconfigured: {way}, or write lifecycle: active in a graph file" in caplog.text
 
 
 async def test_a_plain_node_is_not_managed(graph: Graph) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from graphflow.machines.lifecycle import LifecycleState as State
+from graphflow.machines.lifecycle import commands
 from rclpy._rclpy_pybind11 import TransitionCallbackReturnType as TransitionCallbackReturn
 from rclpy.impl.mistakes.arguments import described
 from rclpy.impl.reexports import passed_on
@@ -65,8 +66,7 @@ class LifecyclePublisher(SimpleManagedEntity, Publisher):
             return
         self._graphflow_has_warned = True
         name, state = node.get_fully_qualified_name(), machine.state
-        steps = {State.UNCONFIGURED: ("configure", "activate"), State.INACTIVE: ("activate",)}.get(state, ())
-        way = " && ".join(f"graphflow lifecycle set {name} {step}" for step in steps)
+        way = commands(name, state)
         why = f"{name} is {state.label}{f', to activate it: {way}' if way else ''}"
         if state is State.ACTIVE and self._graphflow_is_late:
             why = f"it was created while {name} was active: create it in on_configure"
