@@ -78,6 +78,11 @@ def did_you_mean(word: str, choices: Iterable[str], hidden: Iterable[str] = ()) 
     return ""
 
 
+def without_slash(name: str) -> str:
+    """Return the remedy for an absolute name that was meant within a namespace, without its verb."""
+    return f"{name[1:]!r}: a slash in front keeps the namespace out"
+
+
 def check_node_name(name: str) -> str:
     """Check the name of a node, and return it.
 

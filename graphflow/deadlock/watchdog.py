@@ -40,6 +40,8 @@ _REMEDY = "Await the slow part, or move it to a thread: thread=True, or await se
 _OUTSIDE = "Await the slow part, or move it to a thread: await asyncio.to_thread(...)"
 """The same in code without a node at hand."""
 _HELD = "it was stopped, C code held it, or the machine is overloaded"
+BLOCKED = "the event loop has been blocked for"
+"""The words with which every report of a blocked loop begins."""
 _NOTHING_RUNS = "nothing else in this process can run."
 _LOCKED = re.compile(r"(?:^with\s+|^)(?P<name>\w+(?:\.\w+)*)(?:\.acquire\(|\s*:)")
 """Pattern of a line that waits for a lock."""
@@ -200,7 +202,7 @@ class Watchdog:
         if last < 0:
             level, text = _of_others(seconds, time.process_time() - self._processor_time)
         else:
-            blocked = f"the event loop has been blocked for {seconds:.1f} s in {shown[last]}: {_NOTHING_RUNS}"
+            blocked = f"{BLOCKED} {seconds:.1f} s in {shown[last]}: {_NOTHING_RUNS}"
             level, text = logging.ERROR, f"{blocked}\n{_of_lock(frames[last]) or _remedy(frames)}"
         lines = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
         logger.log(level, "%s%s", text, lines)
@@ -232,7 +234,7 @@ def _of_others(seconds: float, processor_time: float) -> tuple[int, str]:
             f"the event loop has not run for {seconds:.1f} s, in which this process got {processor_time:.1f} s of "
             f"processor time; the machine seems to be overloaded, with a load average of {load:.1f}"
         )
-    blocked = f"the event loop has been blocked for {seconds:.1f} s, with no line of this program on its stack"
+    blocked = f"{BLOCKED} {seconds:.1f} s, with no line of this program on its stack"
     return logging.ERROR, f"{blocked}: {_NOTHING_RUNS}"
 
 

@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from itertools import islice
 
 from graphflow.machines.matching import COUNTERPARTS
-from graphflow.names import MAX_LENGTH, is_hidden, nearest
+from graphflow.names import MAX_LENGTH, is_hidden, nearest, without_slash
 from graphflow.wire.liveliness import Entity, Kind
 
 EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
@@ -55,7 +55,8 @@ def did_you_mean_topic(own: Entity, there: ByType) -> str:
     used -= {name for name in used - met if is_misspelt(own.name, name)}  # the node's own other end is misspelt
     names = dict.fromkeys(e.name for e in others if e.name not in used and not is_hidden(e.node_name))
     near = [name for name in islice(names, COMPARED) if is_near(own.name, name)]
-    best = nearest(own.name, sorted(near), cutoff=0.0)
+    within = own.namespace + own.name
+    best = within if within in near else nearest(own.name, sorted(near), cutoff=0.0)
     if best is None:
         return _only_one_of_type(own, names)
     first, *more = sorted({e.node_name for e in others if e.name == best and not is_hidden(e.node_name)})
@@ -64,9 +65,15 @@ def did_you_mean_topic(own: Entity, there: ByType) -> str:
         verbs, end = "listens to", f"to which {who} listen{'' if more else 's'}"
     else:
         verbs, end = "publishes", f"which {who} publish{'' if more else 'es'}"
-    is_absolute = own.namespace != "/" and best == own.namespace + own.name
-    way = f" Write {own.name[1:]!r}: a slash in front keeps the namespace out." if is_absolute else ""
-    return f"nobody {verbs} {own.name} [{own.type}]; did you mean {best!r}, {end}?{way}"
+    return f"nobody {verbs} {own.name} [{own.type}]; did you mean {best!r}, {end}?{_slash(own, best, others)}"
+
+
+def _slash(own: Entity, best: str, others: Iterable[Entity]) -> str:
+    """Return the remedy if one of the two ends has a slash that keeps its namespace out; else empty."""
+    if best == own.namespace + own.name:
+        return f" Write {without_slash(own.name)}."
+    alike = sorted(e.node_name for e in others if e.name == best and own.name == e.namespace + e.name)
+    return f" In {alike[0]} write {without_slash(best)}." if alike else ""
 
 
 def _only_one_of_type(own: Entity, names: Iterable[str]) -> str:

@@ -73,6 +73,19 @@ def test_a_slash_that_keeps_the_namespace_out() -> None:
     )
 
 
+def test_a_slash_at_the_other_end() -> None:
+    """The node that has it is named; of equally near topics, that of the own namespace is meant."""
+    publishers = [endpoint(Kind.PUBLISHER, f"/{n}/pilot", f"/{n}/cmd")._replace(namespace=f"/{n}") for n in "ab"]
+    listeners = [endpoint(Kind.SUBSCRIPTION, f"/{n}/robot", "/cmd")._replace(namespace=f"/{n}") for n in "ab"]
+    there = by_type([*publishers, *listeners], {TWIST})
+    for n, publisher, listener in zip("ab", publishers, listeners, strict=True):
+        way = "write 'cmd': a slash in front keeps the namespace out."
+        assert did_you_mean_topic(publisher, there).endswith(f"listen? In /{n}/robot {way}")
+        assert did_you_mean_topic(listener, there).endswith(
+            f"did you mean '/{n}/cmd', which /{n}/pilot publishes? W{way[1:]}"
+        )
+
+
 def test_what_was_meant_by_a_subscription() -> None:
     """Is told in its words; of several nodes one is named."""
     own = endpoint(Kind.SUBSCRIPTION, "base", "/cmd_vl")

@@ -10,7 +10,7 @@ from graphflow.cli import exits, output
 from graphflow.cli.messages.stamps import Path, stamp
 from graphflow.cli.temporary_node import run_with_node
 from graphflow.msgs.base import Message
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, without_slash
 from graphflow.qos import DEFAULT, Qos
 from graphflow.runtime.endpoints.publishers import TopicPublisher
 from graphflow.runtime.mistakes.network.other_domains import alone_here
@@ -109,7 +109,11 @@ async def _wait_for_subscriptions(node: Node, topic: str, needed: int, limit: fl
 
 async def _near(node: Node, topic: str) -> str:
     """Suggest the topic with subscriptions, or else the domain, that was probably meant."""
-    others = {e.name for e in node.context.cache.endpoints(Kind.SUBSCRIPTION)} - {topic}
+    subscriptions = node.context.cache.endpoints(Kind.SUBSCRIPTION)
+    for other in subscriptions:
+        if topic == other.namespace + other.name:
+            return f"; {other.node_name} subscribes to {other.name}: write {without_slash(other.name)}"
+    others = {e.name for e in subscriptions} - {topic}
     return did_you_mean(topic, (), hidden=others) or await alone_here(node.context, node.full_name)
 
 

@@ -14,7 +14,7 @@ from graphflow.graph.checks.check import Interfaces, remarks_on_programs, resolv
 from graphflow.graph.checks.panes import odd_panes
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, StepKind
 from graphflow.interface import EndpointKind, Interface, may_make
-from graphflow.names import Kind, nearest, split
+from graphflow.names import Kind, nearest, split, without_slash
 from graphflow.workspace.project import project_root, shown
 
 _OTHER_END: Mapping[EndpointKind, tuple[EndpointKind, str]] = {
@@ -40,6 +40,11 @@ _KINDS: Mapping[EndpointKind, str] = {
 }
 _COMMANDS = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 """Types of which a robot obeys the latest message."""
+_SHARED: Mapping[EndpointKind, str] = {
+    "publisher": "publish {}, and the robot obeys the latest",
+    "subscription": "subscribe to {}, and all obey each command",
+}
+"""What nodes do with commands that they share."""
 _EVERYWHERE = ("/clock", "/rosout", "/parameter_events", "/tf", "/tf_static")
 """Topics of tools and of every node."""
 
@@ -151,20 +156,21 @@ def _of_loops(node: PlannedNode, interfaces: Interfaces) -> Iterator[Problem]:
 
 
 def _of_shared_commands(plan: Plan, interfaces: Interfaces) -> Iterator[Problem]:
-    """Yield commands under an absolute name, which nodes of one class in several namespaces all publish."""
-    senders: dict[tuple[Place, str], list[str]] = {}
+    """Yield commands under an absolute name, which nodes of one class in several namespaces publish, or obey."""
+    shared: dict[tuple[Place, str, str], list[str]] = {}
     for node in plan.nodes:
         interface = interfaces[node.class_path]
         assert isinstance(interface, Interface)
         for end in interface.endpoints:
-            is_command = end.kind == "publisher" and end.type in _COMMANDS and end.name.startswith("/")
-            if is_command and resolver(node).resolve(end.name) == end.name:
-                senders.setdefault((end.place, end.name), []).append(node.name)
-    for (place, name), nodes in senders.items():
+            is_absolute = end.name.startswith("/") and resolver(node).resolve(end.name) == end.name
+            if is_absolute and end.kind in _SHARED and end.type in _COMMANDS:
+                shared.setdefault((end.place, end.name, _SHARED[end.kind]), []).append(node.name)
+    for (place, name, verb), nodes in shared.items():
         if len({split(node)[0] for node in nodes}) > 1:
             who = f"{', '.join(nodes[:_SHOWN])} and others" if len(nodes) > _SHOWN else " and ".join(nodes)
-            text = f"{who} publish {name}, and the robot obeys the latest"
-            yield Problem(place, f"{text}: write {name[1:]!r} without /, so that each namespace has its own")
+            yield Problem(
+                place, f"{who} {verb.format(name)}: write {name[1:]!r} without /, so that each namespace has its own"
+            )
 
 
 def _of_steps(plan: Plan, ends: list[_End]) -> Iterator[tuple[str, Problem]]:
@@ -198,6 +204,11 @@ def _of_nodes(ends: list[_End], sure: set[str]) -> Iterator[tuple[str, Problem]]
         if end.name in others or end.name in _EVERYWHERE:
             continue
         topics = sure if end.kind in ("publisher", "subscription") else set[str]()
+        if _within(end) in others | topics:
+            if end.name not in reported:  # the nodes of a class share the line
+                yield end.name, Problem(end.place, f"{_text(end)}; write {without_slash(end.name)}")
+            reported.add(end.name)
+            continue
         near = _nearest(end.name, (others | topics) - {same.name for same in ends if same.kind == end.kind})
         if near not in reported if near else end.remapped_at is not None and end.kind in _NEEDS_ONE:
             reported.add(end.name)
@@ -227,7 +238,14 @@ def _others(end: _End, ends: list[_End]) -> set[str]:
     return {known.name for known in ends if known.kind == other and (not end.type or known.type in ("", end.type))}
 
 
-def _text(end: _End, near: str) -> str:
+def _within(end: _End) -> str:
+    """Return an absolute name as it would be within its node's namespace; empty for other names."""
+    namespace = split(end.node.name)[0] if end.node is not None else "/"
+    is_absolute = end.remapped_at is None and namespace != "/" and not end.name.startswith(f"{namespace}/")
+    return namespace + end.name if is_absolute else ""
+
+
+def _text(end: _End, near: str = "") -> str:
     return f"no node of this graph {_OTHER_END[end.kind][1]} {end.name}{_hint(near)}"
 
 

@@ -17,6 +17,7 @@ from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 
 _RUNS = re.compile(r"\b(run|running|serve|make|Graph|interface)\b\s*\(|\bContext\b")
 """Names in programs that run or inspect nodes in another way."""
+_IMPORTS = re.compile(r"^import graphflow$", re.MULTILINE)
 _classes: list[str] = []
 """Node classes defined in the program's own file."""
 _file: str | None = None
@@ -107,10 +108,9 @@ def advice(file: Path, classes: list[str], made: Collection[str] = ()) -> str:
     if _RUNS.search(source) or not classes:
         return ""
     what = str(file) if len(classes) == 1 else f"MODULE:{classes[0]}"
-    return (
-        f"{file} defines {' and '.join(classes)}, but runs nothing: graphflow run {what}, "
-        f"or as its last line: graphflow.run({classes[0]})\n"
-    )
+    line = f"graphflow.run({classes[0]})"
+    way = f"as its last line: {line}" if _IMPORTS.search(source) else f"as its last lines: import graphflow; {line}"
+    return f"{file} defines {' and '.join(classes)}, but runs nothing: graphflow run {what}, or {way}\n"
 
 
 watch()  # once a program imports nodes, native ones or rclpy's

@@ -63,11 +63,20 @@ def import_class(class_path: str) -> type[Node]:
     module = import_module_of(module_name, class_name)
     found = getattr(module, class_name, None)
     if found is None:
-        near = did_you_mean(class_name, node_classes(module, imported=True))
+        near = _hidden(module) or did_you_mean(class_name, node_classes(module, imported=True))
         raise NoClass(f"module {module_name} has no class {class_name!r}{near}")
     if not (isinstance(found, type) and issubclass(found, Node)):
         raise GraphflowError(f"{class_path} is not a node class: it does not derive from graphflow.Node")
     return found
+
+
+def _hidden(module: ModuleType) -> str:
+    """Return a hint if a file of the project has the name of a module that was imported from elsewhere; else empty."""
+    for root in _roots:
+        file = Path(root, *module.__name__.split(".")).with_suffix(".py")
+        if file.is_file() and module.__file__ and not file.samefile(module.__file__):
+            return f"; {file.name} here is hidden by {module.__file__}: rename it, as in my_{file.name}"
+    return ""
 
 
 def import_module_of(name: str, class_name: str = "") -> ModuleType:

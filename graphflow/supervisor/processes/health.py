@@ -10,10 +10,12 @@ Source: docs/architecture.md, "The rules of processes"; systemd's WatchdogSec.
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import time
 from collections.abc import Callable, Iterable
 
+from graphflow.deadlock.watchdog import BLOCKED
 from graphflow.machines.process import State
 from graphflow.supervisor.processes import process_tree
 from graphflow.supervisor.processes.process import Process
@@ -22,6 +24,8 @@ CHECK_EVERY = 0.5
 """Seconds between two checks."""
 SILENCE = 3.0
 """Seconds without a beat after which a process is unresponsive."""
+_TAIL = 8192
+"""Bytes at the end of a log that are searched."""
 
 
 class Health:
@@ -66,7 +70,16 @@ def _why(process: Process) -> str:
     pid = process.pid or 0
     if process_tree.state_of(pid) == "T":
         return f"process {pid} is stopped; to let it go on: kill -CONT {pid}"
-    if hasattr(signal, "SIGUSR2"):
+    if hasattr(signal, "SIGUSR2") and not _is_logged(process.log):
         process_tree.kill(pid, signal.SIGUSR2)  # its faulthandler dumps the stacks of all threads into the log
-        return f"its event loop is blocked; its log shows where: {process.log}"
-    return f"its event loop is blocked; its log: {process.log}"
+    return f"its event loop is blocked; its log shows where: {process.log}"
+
+
+def _is_logged(log: str) -> bool:
+    """Whether a process has logged that its loop is blocked, and where; while C code holds the GIL, it cannot."""
+    try:
+        with open(log, "rb") as file:
+            file.seek(max(0, os.fstat(file.fileno()).st_size - _TAIL))
+            return BLOCKED.encode() in file.read(_TAIL)
+    except OSError:  # such as a log whose folder was deleted
+        return False

@@ -82,16 +82,23 @@ async def test_waiting_has_a_limit(graph: Graph, capsys: pytest.CaptureFixture[s
     )
 
 
-async def test_nobody_hears(graph: Graph, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("topic", "way"),
+    [
+        ("/chater", "did you mean '/chatter'?"),
+        ("/a/chatter", "/a/listener subscribes to /chatter: write 'chatter': a slash in front keeps the namespace out"),
+    ],
+)
+async def test_nobody_hears(graph: Graph, capsys: pytest.CaptureFixture[str], topic: str, way: str) -> None:
     """A warning is printed once, with the nearest topic that has subscriptions."""
-    node, listener = Node("publishing"), Node("listener")
+    node, listener = Node("publishing"), Node("listener", namespace="/a")
     listener.create_subscription(String, "/chatter", lambda _: None)
     await graph.start(node, listener)
-    publishing = asyncio.create_task(_publish(node, "/chater", [Draft(WORD)], PubOptions(rate=10.0)))
+    publishing = asyncio.create_task(_publish(node, topic, [Draft(WORD)], PubOptions(rate=10.0)))
     await graph.clock.advance(UNHEARD_AFTER + 3.0)
     publishing.cancel()
     told = capsys.readouterr().err
-    assert told.count("no node subscribes to /chater so far; did you mean '/chatter'?") == 1
+    assert told.count(f"no node subscribes to {topic} so far; {way}\n") == 1
 
 
 async def test_it_stays_for_a_while(graph: Graph) -> None:

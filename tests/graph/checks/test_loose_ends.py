@@ -175,6 +175,23 @@ def test_commands_of_several_robots(nodes: list[str], type_: str, who: str) -> N
     way = "write 'cmd_vel' without /, so that each namespace has its own"
     expected = f"code.py:1: {who} publish /cmd_vel, and the robot obeys the latest: {way}"
     assert told(text, {"a:Driver": driver}) == ([expected] if who else [])
+    heard = endpoint("subscription", "/cmd_vel", f"geometry_msgs/msg/{type_}")
+    base = Interface("a:Driver", "driver", CODE, endpoints=(heard,))
+    expected = f"code.py:1: {who} subscribe to /cmd_vel, and all obey each command: {way}"
+    assert [line for line in told(text, {"a:Driver": base}) if "obey" in line] == ([expected] if who else [])
+
+
+def test_a_slash_that_keeps_the_namespace_out() -> None:
+    """The line of the class is told once for all its nodes, and only where the name within the namespace exists."""
+    robot = Interface("a:Robot", "robot", CODE, endpoints=(endpoint("subscription", "/cmd", STRING),))
+    pilot = Interface("a:Pilot", "pilot", CODE, endpoints=(endpoint("publisher", "cmd", STRING),))
+    text = "nodes:\n" + "".join(
+        f"  /{space}/{name}: {{class: a:{name.title()}}}\n" for space in "ab" for name in ("robot", "pilot")
+    )
+    known = {"a:Robot": robot, "a:Pilot": pilot}
+    expected = "code.py:1: no node of this graph publishes /cmd; write 'cmd': a slash in front keeps the namespace out"
+    assert told(text, known) == [expected]
+    assert told(text.replace("a:Pilot}", "a:Pilot, remap: {cmd: /cmd}}"), known) == []
 
 
 def test_a_slip_in_a_class() -> None:

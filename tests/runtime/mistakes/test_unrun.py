@@ -29,7 +29,8 @@ def test_a_program_that_ends(tmp_path: Path, more: str, is_told: bool) -> None:
     """The remark explains how to run it, unless the program made a node or contains a call that runs one."""
     (tmp_path / "talk.py").write_text(TALK + more)
     done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
-    told = "talk.py defines Talk, but runs nothing: graphflow run talk.py, or as its last line: graphflow.run(Talk)\n"
+    way = "as its last lines: import graphflow; graphflow.run(Talk)"
+    told = f"talk.py defines Talk, but runs nothing: graphflow run talk.py, or {way}\n"
     assert done.returncode == 0
     assert done.stderr == (told if is_told else "")
 

@@ -56,6 +56,14 @@ def test_a_class_by_its_path(project: Path) -> None:
     assert import_class("machines.robot:Robot") is sys.modules["machines.robot"].Robot
 
 
+def test_a_file_with_the_name_of_a_package(project: Path) -> None:
+    """It is hidden by the package, and is the one that is meant."""
+    (project / "graphflow.py").write_text("class Robot: ...\n")
+    text = r"module graphflow has no class 'Robot'; graphflow.py here is hidden by .*: rename it, as in my_graphflow.py"
+    with pytest.raises(GraphflowError, match=text):
+        import_class("graphflow:Robot")
+
+
 @pytest.mark.parametrize(
     ("class_path", "problem"),
     [

@@ -11,7 +11,7 @@ import pytest
 from graphflow.errors import Place
 from graphflow.graph.plan import PlannedNode
 from graphflow.machines.process import State
-from graphflow.supervisor.processes import health
+from graphflow.supervisor.processes import health, process_tree
 from graphflow.supervisor.processes.health import CHECK_EVERY, SILENCE, Health
 from graphflow.supervisor.processes.process import Process
 from tests.cases import slow
@@ -103,3 +103,27 @@ def test_who_is_debugged_may_be_silent(monkeypatch: pytest.MonkeyPatch) -> None:
     ward.looks(1.0, speaks=True)
     ward.looks(10 * SILENCE, speaks=False)
     assert (ward.told, ward.process.state_name) == ([], "ready")
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGUSR2"), reason="there are no such signals")
+@pytest.mark.parametrize(
+    ("log", "is_dumped"),
+    [
+        (None, True),
+        ("began\n", True),
+        ("the event loop has been blocked for 1.0 s in a.py:3 in tick\n", False),
+        ("the event loop has been blocked for 1.0 s in a.py:3 in tick\n" + 9000 * ".", True),
+    ],
+)
+def test_the_stacks_of_a_blocked_process(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, log: str | None, is_dumped: bool
+) -> None:
+    """They are asked for only if the process has not logged its line itself, of late."""
+    file = tmp_path / "a.log"
+    if log is not None:
+        file.write_text(log)
+    sent: list[int] = []
+    monkeypatch.setattr(process_tree, "kill", lambda pid, number: sent.append(number))
+    process = Process("/a", [PlannedNode("/a", "x:A", HERE, HERE)], str(file))
+    assert health._why(process) == f"its event loop is blocked; its log shows where: {file}"
+    assert sent == ([signal.SIGUSR2] if is_dumped else [])

@@ -18,6 +18,8 @@ _LEAST_MS, _STEP_MS, _MINUTE = 100, 50, 60
 """Whole numbers from 100 in steps of 50 count as milliseconds, unless they are whole minutes."""
 _LEAST_RATE = 10
 """Whole numbers from here to 100 count as rates in Hz where commands to a robot are published."""
+_RATES = (10, 20, 25, 50)
+"""Whole numbers that count as rates in Hz where any message is published."""
 _ANGLES = ("rpy", "roll", "pitch", "yaw", "theta", "heading", "angle")
 """Keywords of angles in radians."""
 _OF_EULER = ("quaternion_from_euler", "from_rpy", "from_euler")
@@ -62,11 +64,11 @@ def _of_period(call: ast.Call, bindings: Bindings, parents: Sequence[ast.AST]) -
             yield value.lineno, text
         rates = {_hertz(found) for found in bound or [value]}
         rate = rates.pop()
-        if rate is not None and not rates and _commands(_callback(call, parents)):
+        if rate is not None and not rates and (sent := _sent(_callback(call, parents), rate)):
             shown = f"{ast.unparse(value)} is {rate}, and " if bound else ""
             way = f"@timer(hz={rate})" if name == "timer" else f"create_timer(1 / {rate}, ...)"
-            text = f"{shown}a period is in seconds: a command comes every {rate} s"
-            text += f"; if {rate} per second are meant, write {way}"
+            text = f"{shown}a period is in seconds: {sent} comes every {rate} s"
+            text += f"; if {rate} per second are meant, write {way}, else {rate}.0"
             yield value.lineno, text
 
 
@@ -88,6 +90,14 @@ def _callback(call: ast.Call, parents: Sequence[ast.AST]) -> ast.AST | None:
         if isinstance(part, FunctionNode) and part.name == last_name(given[0]):
             return part
     return None
+
+
+def _sent(function: ast.AST | None, rate: int) -> str:
+    """Return what a function sends that is usually sent at such a rate; empty if it sends nothing of the kind."""
+    if _commands(function):
+        return "a command"
+    calls = [node for node in nodes_in(function) if isinstance(node, ast.Call)] if function is not None else []
+    return "a message" if rate in _RATES and any(last_name(call.func) == "publish" for call in calls) else ""
 
 
 def _commands(function: ast.AST | None) -> bool:

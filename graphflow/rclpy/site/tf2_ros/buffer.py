@@ -13,7 +13,7 @@ from tf2_py import BufferCore, LookupException
 
 from rclpy.duration import Duration
 from rclpy.impl.deadlock.buffers import know_buffer
-from rclpy.impl.watches.unfilled import Unfilled
+from rclpy.impl.watches.unfilled import Unfilled, warn_of_new
 from rclpy.task import Future
 from tf2_ros.buffer_interface import AT_ONCE, BufferInterface
 
@@ -36,6 +36,7 @@ class Buffer(BufferCore, BufferInterface):
         self._graphflow_waiting: dict[Future, Callable[[], tuple[bool, str]]] = {}
         self._graphflow_node = node
         self._graphflow = Unfilled()
+        warn_of_new()
         if node is not None:
             self.srv = node.create_service(FrameGraph, "tf2_frames", self._graphflow_serve_frames)
 

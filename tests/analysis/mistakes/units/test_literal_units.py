@@ -60,6 +60,7 @@ def test_numbers_in_another_unit(code: str, told: str) -> None:
 DRIVES = "{}\n    def drive(self):\n        msg = Twist()\n        self.pub.publish(msg)\n"
 FILLS = "{}\n    def drive(self):\n        self.msg.linear.x = 1.0\n"
 COUNTS = "{}\n    def drive(self):\n        self.pub.publish(Int32())\n"
+LOGS = "{}\n    def drive(self):\n        self.get_logger().info('on')\n"
 DECORATED = "class A(Node):\n    @timer({})"
 CREATED = "class A(Node):\n    def __init__(self):\n        self.create_timer({}, self.drive)"
 
@@ -69,15 +70,23 @@ CREATED = "class A(Node):\n    def __init__(self):\n        self.create_timer({}
     [
         (
             DRIVES.format(DECORATED.format(10)),
-            "a command comes every 10 s; if 10 per second are meant, write @timer(hz=10)",
+            "a command comes every 10 s; if 10 per second are meant, write @timer(hz=10), else 10.0",
         ),
-        (FILLS.format(CREATED.format(20)), "every 20 s; if 20 per second are meant, write create_timer(1 / 20, ...)"),
+        (
+            COUNTS.format(DECORATED.format(10)),
+            "a message comes every 10 s; if 10 per second are meant, write @timer(hz=10), else 10.0",
+        ),
+        (
+            FILLS.format(CREATED.format(20)),
+            "every 20 s; if 20 per second are meant, write create_timer(1 / 20, ...), else 20.0",
+        ),
         ("rate = 10\n" + FILLS.format(CREATED.format("rate")), "rate is 10, and a period is in seconds: a command"),
         (DRIVES.format(DECORATED.format(5)), ""),
         (DRIVES.format(DECORATED.format("10.0")), ""),
         (DRIVES.format(DECORATED.format("hz=10")), ""),
-        (COUNTS.format(DECORATED.format(10)), ""),
-        (COUNTS.format(CREATED.format(10)), ""),
+        (COUNTS.format(DECORATED.format(30)), ""),
+        (COUNTS.format(DECORATED.format("10.0")), ""),
+        (LOGS.format(DECORATED.format(10)), ""),
         (DRIVES.format(CREATED.format(10)).replace("self.drive)", "lambda: None)"), ""),
     ],
 )

@@ -24,6 +24,7 @@ from rclpy.executors import await_or_execute
 from rclpy.handle import sending
 from rclpy.impl.action_internals import ActionServerInternals
 from rclpy.impl.mistakes.arguments import described, explained, must_return
+from rclpy.impl.mistakes.uncancelled import Uncancelled
 from rclpy.impl.nodes import internals_of
 from rclpy.impl.reexports import passed_on
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
@@ -75,8 +76,9 @@ class ServerGoalHandle:
     def __init__(self, action_server: ActionServer, goal_info: GoalInfo, goal_request: object) -> None:
         self._action_server, self._goal_request = action_server, goal_request
         self._goal_id, self.stamp = goal_info.goal_id, goal_info.stamp
-        self._status = Status.ACCEPTED
+        self.state = Status.ACCEPTED  # graphflow's own
         self._has_warned = False
+        self._uncancelled = Uncancelled(action_server)
         self._lock = threading.Lock()
         self.result_future: Future = Future()
         self.result_requests: list[Asked] = []
@@ -100,27 +102,31 @@ class ServerGoalHandle:
     @property
     def is_active(self) -> bool:
         """Whether the goal has not ended."""
-        return not self._status.is_terminal
+        return not self.state.is_terminal
 
     @property
     def is_cancel_requested(self) -> bool:
         """Whether cancellation was accepted: call `canceled` then, and return."""
-        return self._status is Status.CANCELING
+        self._uncancelled.look()
+        return self.state is Status.CANCELING
 
     @property
     def status(self) -> int:
         """The status, a value of action_msgs/msg/GoalStatus."""
-        return int(self._status)
+        self._uncancelled.look()
+        return int(self.state)
 
     def step(self, event: GoalEvent) -> None:
         """Move to the status that follows an event, and publish it. Raises RCLError if none does. graphflow's own."""
         with self._lock:
-            following = _STEPS.get((self._status, event))
+            following = _STEPS.get((self.state, event))
             if following is None:
                 raise RCLError(
-                    f"goal_handle attempted invalid transition from state {self._status.name} with event {event.name}"
+                    f"goal_handle attempted invalid transition from state {self.state.name} with event {event.name}"
                 )
-            self._status = following
+            self.state = following
+        if following is Status.CANCELING:
+            self._uncancelled.cancelled()
         internals_of(self.action_server).publish_status()
         if following.is_terminal:
             self.action_server.notify_goal_done()
@@ -131,21 +137,23 @@ class ServerGoalHandle:
     def execute(self, execute_callback: Callable[[ServerGoalHandle], object] | None = None) -> None:
         """Start the execution, by `execute_callback` or else by the server's."""
         # Cancelled before it began: CANCELING cannot become EXECUTING; the callback ends such a goal.
-        if not self.is_cancel_requested:
+        if self.state is not Status.CANCELING:
             self.step(GoalEvent.EXECUTE)
         self.action_server.notify_execute(self, execute_callback)
 
     def publish_feedback(self, feedback: object) -> None:
         """Publish feedback to the client. Raises TypeError if it is not of the action's feedback type."""
-        if self._status.is_terminal and not self._has_warned:
+        if self.state.is_terminal and not self._has_warned:
             self._has_warned = True
-            word = {Status.SUCCEEDED: "succeed", Status.ABORTED: "abort"}.get(self._status, "canceled")
+            word = {Status.SUCCEEDED: "succeed", Status.ABORTED: "abort"}.get(self.state, "canceled")
             text = f"feedback after {word}(): the client has its status already; call {word}() last, before the return"
             self.action_server.warn(text)
+        self._uncancelled.sent_feedback()
         internals_of(self.action_server).publish_feedback(self.goal_id, feedback)
 
     def succeed(self) -> None:
         """Mark the goal as succeeded. Raises RCLError if it has ended already."""
+        self._uncancelled.succeeds()
         self.step(GoalEvent.SUCCEED)
 
     def abort(self) -> None:
@@ -331,7 +339,7 @@ class ActionServer(Waitable):
         self._logger.debug(f"Goal with ID {bytes(goal_handle.goal_id.uuid).hex()} finished")
         carrier = self._action_type.Impl.GetResultService
         # The status is read last: `succeed`, `abort`, `canceled` or the line above has set it.
-        response = carrier.Response(status=goal_handle.status, result=result)
+        response = carrier.Response(status=int(goal_handle.state), result=result)
         goal_handle.result_future.set_result(response)
         if self._graphflow_result_timeout >= 0:
             LOOP.soon(self._graphflow_expire_later, goal_handle)

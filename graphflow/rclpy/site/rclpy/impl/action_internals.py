@@ -276,7 +276,7 @@ class ActionServerInternals(ActionInternals):
         with self.lock:
             goals = list(self.handles.values())
         rows = [
-            msg.GoalStatus(goal_info=msg.GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp), status=goal.status)
+            msg.GoalStatus(goal_info=msg.GoalInfo(goal_id=goal.goal_id, stamp=goal.stamp), status=int(goal.state))
             for goal in goals
         ]
         if self.is_open:

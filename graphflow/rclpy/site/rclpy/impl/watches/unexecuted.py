@@ -50,10 +50,10 @@ class Unexecuted:
     def _check_server(self, node: Node, server: ActionServer) -> None:
         inner = internals_of(server)
         now, goals = time.monotonic(), list(inner.handles.values())
-        is_busy = any(goal.status in (Status.EXECUTING, Status.CANCELING) for goal in goals)
+        is_busy = any(goal.state in (Status.EXECUTING, Status.CANCELING) for goal in goals)
         has_searched = False
         for goal in goals:
-            if goal.status != Status.ACCEPTED or is_busy:
+            if goal.state is not Status.ACCEPTED or is_busy:
                 self._since.pop(goal, None)
                 continue
             seconds = now - self._since.setdefault(goal, now)

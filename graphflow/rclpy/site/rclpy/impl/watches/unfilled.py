@@ -1,4 +1,4 @@
-"""A transform buffer that is queried but never filled, since its program has created no listener.
+"""A transform buffer that is queried but never filled: it has no listener, or is a new one in each call.
 
 In ROS 2 every lookup fails because the frame does not exist.
 """
@@ -8,16 +8,35 @@ from __future__ import annotations
 import logging
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
 from types import FrameType
 
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.user_code import is_installed, is_users, short_place, users_frame
+from graphflow.errors import Place
+from rclpy.impl.callers import caller
+from rclpy.impl.deadlock.stacks import is_in_run
 
 WARN_AFTER = 1.0
 """Seconds from the first failed lookup: a listener may be created after it."""
 _FILLERS = ("set_transform", "set_transform_static")
 logger = logging.getLogger("graphflow")
+
+
+_made = Counter[Place]()
+"""How often each line has created a buffer in a callback."""
+
+
+def warn_of_new() -> None:
+    """Warn of a buffer that a callback creates for the second time: a new one holds no transforms yet."""
+    asked = caller(2)
+    if asked is None or not is_in_run(asked.frame):
+        return
+    _made[asked.place] += 1
+    if _made[asked.place] == 2:
+        way = "create it and its TransformListener in __init__, and keep both in attributes"
+        logger.warning("%s: each call creates a new Buffer, which holds no transforms yet: %s", asked.place, way)
 
 
 class Unfilled:

@@ -8,6 +8,7 @@ from tf2_ros import Buffer, LookupException, TransformListener
 from rclpy.impl.watches import unfilled
 from rclpy.node import Node
 from rclpy.time import Time
+from tests.rclpy.conftest import Spinner
 
 REMARK = "nothing fills this Buffer; write self.listener = TransformListener({}, self)"
 
@@ -58,3 +59,22 @@ def test_buffers_that_are_filled(node: Node, caplog: pytest.LogCaptureFixture, m
     monkeypatch.undo()
     assert own.tf._graphflow.remark == ""
     assert told(caplog) == []
+
+
+def test_a_new_one_in_each_call(node: Node, spin: Spinner, caplog: pytest.LogCaptureFixture) -> None:
+    """It is told once, at the second; one that a program makes beside its callbacks is its own affair."""
+    made: list[Buffer] = []
+
+    def tick() -> None:
+        made.append(Buffer())
+
+    tick()
+    tick()
+    assert caplog.messages == []
+    node.create_timer(0.01, tick)
+    spin(lambda: len(made) > 5)
+    line = tick.__code__.co_firstlineno + 1
+    assert caplog.messages == [
+        f"test_unfilled.py:{line}: each call creates a new Buffer, which holds no transforms yet: create it and its "
+        "TransformListener in __init__, and keep both in attributes"
+    ]
