@@ -10,6 +10,7 @@ from typing import Final, TypeAlias
 from graphflow.analysis.mistakes.calls.busy_loops import busy_loops
 from graphflow.analysis.mistakes.calls.called_early import results_passed
 from graphflow.analysis.mistakes.calls.defined_twice import defined_twice
+from graphflow.analysis.mistakes.calls.hidden_logs import hidden_logs
 from graphflow.analysis.mistakes.calls.kept_locks import kept_locks
 from graphflow.analysis.mistakes.calls.silent_excepts import silent_excepts
 from graphflow.analysis.mistakes.calls.single_transforms import single_transforms
@@ -59,6 +60,7 @@ IN_FILES: Final[tuple[Callable[[ast.Module], Found], ...]] = (
     contrary_names,
     literal_units,
     silent_excepts,
+    hidden_logs,
     wrong_scale,
 )
 """Checks that also read the imports and names of the whole file."""

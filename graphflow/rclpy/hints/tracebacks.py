@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import threading
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from types import TracebackType
+from typing import Any
 
 from graphflow.analysis.user_code import is_ours, is_refusal, is_users, parts_of
 from graphflow.rclpy.hints import lookup
@@ -72,11 +75,30 @@ def _is_redundant(error: BaseException) -> bool:
 
 
 def show(kind: type[BaseException], error: BaseException, _: TracebackType | None = None) -> None:
-    """Print an uncaught error, shortened, with its next step; what an interrupt cuts short is left out."""
-    with suppress(KeyboardInterrupt):
+    """Print an uncaught error, shortened, with its next step; further interrupts are ignored meanwhile."""
+    with _without_interrupts():
         shorten(error)
-    with suppress(KeyboardInterrupt):
         sys.__excepthook__(kind, error, error.__traceback__)
+
+
+@contextmanager
+def _without_interrupts() -> Iterator[None]:
+    """Ignore Ctrl-C, which is often pressed twice: it would cut the text short."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    former = _handle_interrupts(signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        _handle_interrupts(former)
+
+
+def _handle_interrupts(handler: Any) -> Any:
+    """Set the handler of SIGINT; returns the former one, None if it was not set from Python."""
+    while True:
+        with suppress(KeyboardInterrupt):  # of a signal that came just before
+            return signal.signal(signal.SIGINT, signal.SIG_DFL if handler is None else handler)
 
 
 def _show_in_thread(args: threading.ExceptHookArgs) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 import threading
 import traceback
@@ -139,14 +140,39 @@ def test_an_interrupt_in_the_hook(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """It leaves out the rest of the hint, and the error is shown."""
+    """It is ignored: the error is shown whole, and Ctrl-C works again afterwards."""
+    real, former = getattr(*place), signal.getsignal(signal.SIGINT)
 
-    def interrupted(*_: object) -> str:
-        raise KeyboardInterrupt
+    def interrupted(*given: Any) -> Any:
+        signal.raise_signal(signal.SIGINT)
+        return real(*given)
 
     monkeypatch.setattr(*place, interrupted)
     tracebacks.show(kind, kind("the reason"))
-    assert ("the reason" in capsys.readouterr().err) is (place[0] is not sys)
+    assert capsys.readouterr().err == f"{kind.__name__}: the reason\n"
+    assert signal.getsignal(signal.SIGINT) is former
+
+
+def test_an_interrupt_before_the_hook(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is raised where the hook sets the handler, and is ignored, too."""
+    real, late = signal.signal, [KeyboardInterrupt]
+
+    def pending(number: int, handler: Any) -> Any:
+        if late:
+            raise late.pop()
+        return real(number, handler)
+
+    monkeypatch.setattr(signal, "signal", pending)
+    tracebacks.show(ValueError, ValueError("the reason"))
+    assert capsys.readouterr().err == "ValueError: the reason\n"
+
+
+def test_an_error_shown_in_another_thread(capsys: pytest.CaptureFixture[str]) -> None:
+    """Signals are the main thread's; the error is shown as it is there."""
+    thread = threading.Thread(target=tracebacks.show, args=(ValueError, ValueError("the reason")))
+    thread.start()
+    thread.join(10)
+    assert capsys.readouterr().err == "ValueError: the reason\n"
 
 
 def test_the_hook_of_threads(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,5 +37,7 @@ def _early(method: FunctionNode) -> Iterator[tuple[int, str]]:
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=publisher, attr="publish"))):
                 if is_own(publisher) and publisher.attr in volatile:
                     text = "in __init__, before ROS 2 has found any listener, a message is usually lost"
-                    way = "publish it in a timer, or make the publisher with durability TRANSIENT_LOCAL"
+                    way = (
+                        "publish it in a timer, or give the publisher and its subscriptions durability TRANSIENT_LOCAL"
+                    )
                     yield statement.lineno, f"{text}; {way}"
