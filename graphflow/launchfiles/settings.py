@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -131,8 +132,9 @@ def _params(params: list[Item], files: list[Item], complain: Complain) -> dict[s
     values: dict[str, Item] = {}
     for param in params:
         if isinstance(param.value, dict) and not param.entries.keys() & {*_OF_PARAMS}:
-            first = next(iter(param.entries), "rate")
-            complain(param.place, f"param: expected a list of names and values, such as - {{name: {first}, value: 1}}")
+            first, given = next(iter(param.entries.items()), ("rate", Item(1.0, param.place)))
+            way = f"such as - {{name: {first}, value: {json.dumps(given.plain(), default=str)}}}"
+            complain(param.place, f"param: expected a list of names and values, {way}")
             continue
         _refuse_unknown(param, complain)
         if not param.entries.keys() & {"from", "param", "value"} and param.entries.keys() - {*_OF_PARAMS}:

@@ -13,7 +13,7 @@ from graphflow.runtime.part import Host
 from graphflow.times import NANOSECONDS, to_ns
 
 TIMELESS = (
-    "it uses simulated time (use_sim_time), but there is no message on /clock: its timers stand still. Start the "
+    "it uses simulated time (use_sim_time), but there is no message on /clock: its clock stands still. Start the "
     "simulator, or let it go on if it is paused, or play a bag with --clock, or set use_sim_time to false"
 )
 WARN_AFTER = 3.0

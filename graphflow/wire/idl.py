@@ -120,10 +120,8 @@ def _sections(full_name: str, text: str, expected: int) -> list[list[_Line]]:
         for number, line in enumerate(text.splitlines(), 1):
             if _NEAR_SEPARATOR.match(line) and line.strip() != _SEPARATOR:
                 raise InterfaceError(f"{full_name} line {number}: {line.strip()!r}: write {_SEPARATOR}")
-        raise InterfaceError(
-            f"{full_name}: expected {expected - 1} line(s) of '---' "
-            f"between its {expected} section(s), found {len(sections) - 1}"
-        )
+        names = {1: "one message", 2: "request --- response", 3: "goal --- result --- feedback"}[expected]
+        raise InterfaceError(f"{full_name}: expected {names}; lines with --- found: {len(sections) - 1}")
     return sections
 
 

@@ -266,7 +266,7 @@ def test_lifecycle_nodes() -> None:
         ("node: {pkg: a, type: b}", "f.yaml:1:26: node: unknown attribute 'type'; it is called 'exec' here"),
         (
             "node: {pkg: a, exec: b, param: {rate: 2.0}}",
-            "f.yaml:1:42: param: expected a list of names and values, such as - {name: rate, value: 1}",
+            "f.yaml:1:42: param: expected a list of names and values, such as - {name: rate, value: 2.0}",
         ),
         ("node: {pkg: a}", "f.yaml:1:11: node: the attributes 'pkg' and 'exec' are needed"),
         ("node: 3", "f.yaml:1:17: node: expected a mapping of its attributes, got 3"),

@@ -52,7 +52,7 @@ async def test_time_that_does_not_begin(graph: Graph, caplog: pytest.LogCaptureF
     node = Node("n", use_sim_time=True)
     await graph.start(node)
     [text] = core_of(node).complaints()
-    assert "there is no message on /clock: its timers stand still" in text
+    assert "there is no message on /clock: its clock stands still" in text
     await graph.clock.advance(2.9)
     assert TIMELESS not in caplog.messages
     await graph.clock.advance(10.0)

@@ -287,7 +287,7 @@ def test_lines_are_counted_through_the_sections() -> None:
 )
 def test_the_number_of_sections_is_checked(name: str, text: str, found: int) -> None:
     """Too few or too many lines of dashes are refused, with the number found."""
-    with pytest.raises(InterfaceError, match=rf"{name}: expected .* found {found}$"):
+    with pytest.raises(InterfaceError, match=rf"{name}: expected .* found: {found}$"):
         idl.parse(name, text)
 
 

@@ -90,7 +90,8 @@ def _project(name: str, destination: Path, unused: Mapping[str, object]) -> None
     output.lines(f"creating {_joined(destination, file.relative_to(destination))}" for file in write_project(folder))
     if unused:
         options = ", ".join(f"--{option.replace('_', '-')}" for option in unused)
-        output.talk(f"note: {options}: not used by a graphflow project; --build-type writes a ROS 2 package")
+        way = f"for a ROS 2 package, remove {name} and add --build-type ament_python"
+        output.talk(f"note: {options}: not used by a graphflow project; {way}")
     output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{folder.name}.yaml")
 
 

@@ -124,7 +124,7 @@ def test_without_a_build_type(machine: Machine, tmp_path: Path) -> None:
     words = ["my_pkg", "--node-name", "first", "--destination-directory", "src"]
     told = machine.look("pkg", "create", *words, cwd=tmp_path)
     assert "creating src/my_pkg/pyproject.toml" in told
-    assert "note: --node-name: not used by a graphflow project; --build-type writes" in told
+    assert "note: --node-name: not used by a graphflow project; for a ROS 2 package, remove" in told
     assert not (tmp_path / "src/my_pkg/package.xml").exists()
 
 

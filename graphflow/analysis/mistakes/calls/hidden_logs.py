@@ -9,14 +9,17 @@ from graphflow.analysis.syntax import last_name, nodes_in
 
 _LOGGERS = ("log", "logger", "get_logger")
 _SHOWN = ("info", "warn", "warning", "error", "fatal", "critical", "exception", "log")
+_RUNS = ("spin", "spin_once", "run", "running")
+"""Calls of a program, as opposed to a module of one."""
 _OTHERS = ("print", "write", "set_level", "setLevel", "set_logger_level", "basicConfig", "dictConfig")
 """Calls that show something in another way, or change the level."""
 
 
 def hidden_logs(module: ast.Module) -> Iterator[tuple[int, str]]:
-    """Find the first call of `debug` in a file that shows nothing else; it comes with a sentence."""
+    """Find the first call of `debug` in a program that shows nothing else; it comes with a sentence."""
     calls = [node for node in nodes_in(module) if isinstance(node, ast.Call)]
-    if any(last_name(call.func) in _OTHERS for call in calls):
+    called = {last_name(call.func) for call in calls}
+    if called.isdisjoint(_RUNS) or not called.isdisjoint(_OTHERS):
         return
     logged = [call for call in calls if isinstance(call.func, ast.Attribute) and _is_logger(call.func.value)]
     if any(last_name(call.func) in _SHOWN for call in logged):

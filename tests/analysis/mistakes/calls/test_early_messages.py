@@ -24,8 +24,8 @@ def test_a_message_at_the_start() -> None:
     [(line, text)] = early_messages(ast.parse(PROGRAM.format(10, "self.pub.publish(Bool(data=True))")))
     assert line == 5
     assert text == (
-        "in __init__, before ROS 2 has found any listener, a message is usually lost; publish it in a timer, or make "
-        "the publisher with durability TRANSIENT_LOCAL"
+        "in __init__, before ROS 2 has found any listener, a message is usually lost; publish it in a timer, or give "
+        "the publisher and its subscriptions durability TRANSIENT_LOCAL"
     )
 
 

@@ -17,7 +17,6 @@ from rclpy.impl.entities import full_name, role_of
 from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.impl.spinning import Run
 from rclpy.impl.watches.starvation import (
-    OWN_GROUP,
     RETURN,
     HeldUp,
     empty_group,
@@ -25,6 +24,7 @@ from rclpy.impl.watches.starvation import (
     label_of,
     label_with_line,
     node_of,
+    own_group,
     place_of,
 )
 from rclpy.timer import Timer
@@ -50,6 +50,8 @@ class _Slow(NamedTuple):
     late: Timer
     is_own: bool
     """Whether the timer is delayed by its own callback."""
+    own_group: str
+    """The remedy of another callback group."""
     remark: str
     """A further remark on the node."""
 
@@ -107,7 +109,7 @@ class LateTimers:
         title = f"{label_of(run)} of {full_name(node)}"
         if self._held_up.is_deadlocked(run, title):
             return None
-        return _Slow(title, place_of(level, node), own or late[0], own is not None, empty_group(node))
+        return _Slow(title, place_of(level, node), own or late[0], own is not None, own_group(run), empty_group(node))
 
     def _report_slow(self, slow: _Slow, seconds: float) -> None:
         if slow.title not in self._were_slow and seconds < SLOW_ONCE:
@@ -119,7 +121,7 @@ class LateTimers:
             else:
                 late, way = (
                     f"keeps {role_of(slow.late).label}, which is due {every}, waiting",
-                    f"{RETURN}, or {OWN_GROUP}",
+                    f"{RETURN}, or {slow.own_group}",
                 )
             text = "%s takes %.1f s, as in %s, and %s: %s%s"
             logger.warning(text, slow.title, seconds, slow.place, late, way, slow.remark)

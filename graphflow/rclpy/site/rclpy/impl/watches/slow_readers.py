@@ -12,7 +12,7 @@ from rclpy.impl.deadlock.stacks import stacks
 from rclpy.impl.entities import full_name, role_of
 from rclpy.impl.spinning import Run
 from rclpy.impl.watches.late_timers import SLOW
-from rclpy.impl.watches.starvation import OWN_GROUP, HeldUp, kept_by, label_of, node_of, place_of
+from rclpy.impl.watches.starvation import HeldUp, kept_by, label_of, node_of, own_group, place_of
 from rclpy.subscription import Subscription
 
 MANY = 100
@@ -48,7 +48,7 @@ class SlowReaders:
             return
         who, way = "", "return from it soon (a timer does what a sleep does)"
         if losing[0] is not run.entity:
-            who, way = f"{role_of(losing[0]).label} ", f"{way}, or {OWN_GROUP}"
+            who, way = f"{role_of(losing[0]).label} ", f"{way}, or {own_group(run)}"
         counts = losing[0].endpoint.dropped, losing[0].endpoint.received
         text = "%s takes %.1f s or more, as in %s, and %shas lost %d of %d messages: %s"
         logger.warning(text, title, seconds, place_of(level, node), who, *counts, way)

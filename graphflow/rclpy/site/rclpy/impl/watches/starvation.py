@@ -44,7 +44,6 @@ WARN_AFTER = 3.0
 SHOWN = 3
 """The number of callbacks that a report names."""
 RETURN = "return from it soon (a timer does what a loop with a sleep does)"
-OWN_GROUP = "give it a callback group of its own and spin with MultiThreadedExecutor()"
 _WAIT = Wake.wait.__code__
 logger = logging.getLogger("graphflow")
 
@@ -58,6 +57,13 @@ class _Report(NamedTuple):
     text: str
     is_over: str
     """The phrase for its end, before its duration in seconds."""
+
+
+def own_group(run: Run) -> str:
+    """Return how a run lets other callbacks run beside it: in a group of its own, on an executor with threads."""
+    if (threads_of(run.executor) or 1) > 1:
+        return "give it a callback group of its own: these share one, whose callbacks run one at a time"
+    return "give it a callback group of its own and spin with MultiThreadedExecutor()"
 
 
 class HeldUp:
@@ -135,7 +141,7 @@ class HeldUp:
         others, way = [word for word in kept if word != label_of(run)], RETURN
         keeps = "is due again"
         if others:
-            keeps, way = f"keeps {_joined(others)} waiting", f"{RETURN}, or {OWN_GROUP}"
+            keeps, way = f"keeps {_joined(others)} waiting", f"{RETURN}, or {own_group(run)}"
         if level.waiting is not None:
             way = "it spins there; let it return instead, and the spin that called it continues"
         text = f"{title} has been running for {seconds:.1f} s, now in {place_of(level, node)}, and {keeps}: {way}"
