@@ -131,3 +131,8 @@ def _end_of_quote(text: str, start: int) -> int:
     """Return the index of the quote that closes the one at `start`; -1 if there is none."""
     found = _QUOTED[text[start]].match(text, start)
     return found.end() - 1 if found else -1
+
+
+def as_argument(name: str, file: str) -> str:
+    """Return how a file uses the value of an argument: in Python, or in XML and YAML."""
+    return f"LaunchConfiguration({name!r})" if file.endswith(".py") else f"$(var {name})"

@@ -22,7 +22,7 @@ from graphflow.markup.copies import copy_of
 from graphflow.markup.expressions import ExpressionError, evaluate, with_quotes
 from graphflow.markup.param_types import as_type, from_yaml
 from graphflow.markup.source import Data, scalar
-from graphflow.markup.substitution_words import UnclosedError, Word, as_word, quoted, spans, words
+from graphflow.markup.substitution_words import UnclosedError, Word, as_argument, as_word, quoted, spans, words
 from graphflow.names import did_you_mean
 from graphflow.reading import found_bytes
 from graphflow.workspace.executables import package_prefix, package_program, package_share
@@ -380,8 +380,7 @@ def truth(value: object, file: str) -> bool:
     compare = "EqualsSubstitution(..., 'text')" if file.endswith(".py") else "$(eval NAME == 'text')"
     way = f"write {meant!r}" if meant is not None else f"compare with {compare}"
     if meant is None and isinstance(value, str) and value.isidentifier():
-        argument = f"LaunchConfiguration({value!r})" if file.endswith(".py") else f"$(var {value})"
-        way = f"to use the argument of that name write {argument}; else {way}"
+        way = f"to use the argument of that name write {as_argument(value, file)}; else {way}"
     raise SubstitutionError(f"expected true or false, got {value!r}; {way}")
 
 

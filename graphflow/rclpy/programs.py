@@ -97,7 +97,8 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
         is_explained = words[0].removesuffix(".py") in package.why_no_executable
         near = "" if is_explained else launching(words[0], [package]) or _unnamed(package, words[0])
         near = near or ("" if is_explained else did_you_mean(words[0], package.executables))
-        raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}{package.why_no_executable}")
+        way = f"{package.why_no_executable}{workspace.way_to_double(what)}"
+        raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}{way}")
     file, entry = found
     is_ours = entry is not None and is_graphflows(file)
     return None if is_ours and not is_folder else Program(file, entry, workspace, list(words[1:]))

@@ -257,6 +257,11 @@ class Workspace:
     doubles: tuple[Package, ...] = ()
     """Packages with the name of another that was found before."""
 
+    def way_to_double(self, name: str) -> str:
+        """Return how to use another package of that name, for an error of the first; empty if there is none."""
+        other = next((double.folder for double in self.doubles if double.name == name), None)
+        return f"; to use {other} instead: cd {other}" if other is not None else ""
+
     @property
     def import_roots(self) -> list[Path]:
         """The import roots of all packages."""

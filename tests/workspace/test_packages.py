@@ -239,6 +239,9 @@ def test_two_packages_of_one_name(tmp_path: Path) -> None:
     found = find_workspace(tmp_path)
     assert found.packages["lamp"].folder == first
     assert [double.folder for double in found.doubles] == [second]
+    name = found.doubles[0].name
+    assert found.way_to_double(name) == f"; to use {second} instead: cd {second}"
+    assert found.way_to_double("another") == ""
 
 
 def test_packages_beside_the_ones_around_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -109,9 +109,8 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
             graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
             way = f"; to start its graph: graphflow up {first}" if graph else "; graphflow launch FILE starts a file"
             raise UsageFault(f"the package {first!r} that comes with graphflow has no launch files{way}")
-        raise UsageFault(
-            f"Package {first!r} not found{f': {why}' if why else '; to start a file: graphflow launch FILE'}"
-        )
+        way = "; go to the folder that has it in src/, or to one within it, or start a file: graphflow launch FILE"
+        raise UsageFault(f"Package {first!r} not found{f': {why}' if why else way}")
     files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0])]
     if not found:

@@ -17,6 +17,8 @@ from pathlib import Path
 from pydantic import BaseModel
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
+from graphflow.graph.checks.parameter_slips import texts_for_arguments
+from graphflow.graph.checks.taken_names import taken
 from graphflow.graph.checks.validation import M, Problems, colon_fault, example, unknown_key, validated
 from graphflow.graph.expansion.arguments import Arguments, arguments_after_name
 from graphflow.graph.expansion.inherit import BY_ENTRY, after_groups, from_template, with_groups
@@ -338,6 +340,8 @@ class Expansion:
                 self._problems.add_unless_ros(item.at, f"there is a node {taken} already; this one is called {name}")
         if self._is_taken(name, item, scope, self.nodes, "nodes"):
             return
+        for slip in texts_for_arguments(item.entries.get("params"), scope.values):
+            self._problems.remark(*slip)
         with self._problems.of_node(name):
             item = self._values.substituted(
                 item.without("if", "unless", "template", "namespace"), scope, ("args", "command"), _TEXTS
@@ -410,22 +414,8 @@ class Expansion:
     def _is_taken(self, name: str, item: Item, scope: Scope, those: Mapping[str, Item], what: str) -> bool:
         if name not in those:
             return False
-        first = those[name].at
-        if first.file != item.at.file:
-            if what == "nodes" and len(scope.files) == 1:
-                text = f"{name} is already in the included file; change it under override:"
-            elif what == "nodes":
-                text = f"{name} is already at {first}; give one of them another name, or one include: a namespace"
-            else:
-                text = f"there is a step {name!r} already, at {first}; give this one another name"
-        elif first == item.at:
-            slash = (
-                "leave out its slash and " if scope.namespace != "/" and self.written[name][0].startswith("/") else ""
-            )
-            text = f"this makes the {what[:-1]} {name} more than once: put the loop's variable into its name, or "
-            text += f"{slash}give each include: of this file a namespace of its own"
-        else:
-            text = f"there are two {what} {name}; the other is on line {first.line}"
+        is_absolute = scope.namespace != "/" and self.written[name][0].startswith("/")
+        text = taken(name, what, item.at, those[name].at, is_included=len(scope.files) > 1, is_absolute=is_absolute)
         self._problems.add(item.at, text)
         return True
 

@@ -7,9 +7,16 @@ from pathlib import Path
 import pytest
 
 from graphflow.errors import Place
-from graphflow.graph.checks.parameter_slips import misplaced_key, set_in_a_method, value_correction
+from graphflow.graph.checks.parameter_slips import (
+    misplaced_key,
+    set_in_a_method,
+    texts_for_arguments,
+    value_correction,
+)
 from graphflow.graph.plan import Setting
 from graphflow.interface import Parameter
+from graphflow.markup import source
+from graphflow.markup.tree import tree
 
 CODE = Place("code.py", 1)
 RATE = Parameter("rate", "float", 1.0, CODE, gt=0.0)
@@ -92,3 +99,12 @@ def test_a_parameter_that_a_method_sets(tmp_path: Path) -> None:
     )
     assert set_in_a_method("rate", place) == ""
     assert set_in_a_method("speed", Place("nowhere.py", 1)) == ""
+
+
+def test_texts_for_arguments() -> None:
+    """A value is meant as an argument only where parameter and argument have that name."""
+    written = source.read("{rate: rate, map: $(var map), frame: map, mode: mode}", "g.launch.py")
+    found = texts_for_arguments(tree(written), {"rate", "map"})
+    way = "write LaunchConfiguration('rate')"
+    assert [*map(str, found)] == [f"g.launch.py:1:8: 'rate' is a text here; for the argument of that name {way}"]
+    assert [*texts_for_arguments(None, {"rate"})] == []

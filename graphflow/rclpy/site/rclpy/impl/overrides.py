@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import linecache
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from graphflow.markup.substitution_words import as_argument
 from rclpy.parameter import Parameter
 
 Kind = Parameter.Type
@@ -51,10 +53,21 @@ def remark(name: str, value: Any, source: str, kind: Parameter.Type) -> str:
             way = f'-p "{name}:={written}"'
     else:
         where, way = f"in {Path(source).name}", _in_file(name, written, source, kind)
+    if isinstance(value, str) and _is_argument(value, source):
+        way = as_argument(value, source.partition(":")[0])
+        return f"{name} is set {where} to the text {value!r}: for the argument of that name write {way}"
     if not written and kind in _NEEDED:
         return f"{name} is set {where}: it needs {_NEEDED[kind]}"
     other = f", or declare it as declare_parameter({name!r}, {value})" if isinstance(value, bool) else ""
     return f"{name} is set {where}" + (f": write {way}{other}" if written and way else "")
+
+
+def _is_argument(text: str, source: str) -> bool:
+    """Whether a text is the name of an argument of the launch file that sets it, and no substitution made it."""
+    lines = linecache.getlines(source.partition(":")[0])
+    begin = r"""(DeclareLaunchArgument\(\s*(name=)?|<arg\s+name=|\barg:\s*\{?\s*name:\s*)["']?"""
+    declares = re.compile(rf"{begin}{re.escape(text)}\b")
+    return text.isidentifier() and ".launch." in source and declares.search("".join(lines)) is not None
 
 
 def _in_file(name: str, written: str, source: str, kind: Parameter.Type) -> str:

@@ -77,6 +77,28 @@ def test_files(tmp_path: Path, name: str, lines: str, way: str) -> None:
     assert remark("gain", 7, f"{tmp_path / name}:1", Kind.DOUBLE) == f"gain is set in {name}:1{way}"
 
 
+@pytest.mark.parametrize(
+    ("name", "declared", "way"),
+    [
+        ("t.launch.py", "DeclareLaunchArgument('gain', default_value='2')", "LaunchConfiguration('gain')"),
+        ("t.launch.py", 'DeclareLaunchArgument(name="gain")', "LaunchConfiguration('gain')"),
+        ("t.launch.xml", '<arg name="gain"/>', "$(var gain)"),
+        ("t.launch.yaml", "- arg: {name: gain}", "$(var gain)"),
+        ("t.launch.yaml", "- arg:\n    name: gain\n", "$(var gain)"),
+        ("t.launch.yaml", "- arg: {name: gains}", ""),
+        ("t.yaml", "- arg: {name: gain}", ""),
+    ],
+)
+def test_the_name_of_an_argument(tmp_path: Path, name: str, declared: str, way: str) -> None:
+    """In its place stands the argument, as the language of the file writes it."""
+    (tmp_path / name).write_text(f"{declared}\n")
+    found = remark("gain", "gain", f"{tmp_path / name}:1", Kind.DOUBLE)
+    told = (
+        f" to the text 'gain': for the argument of that name write {way}" if way else ": it needs a number, such as 2.0"
+    )
+    assert found == f"gain is set in {name}:1{told}"
+
+
 def test_a_value_that_no_parameter_has() -> None:
     """It is told where it is written, and as what it could be."""
     with pytest.raises(TypeError) as caught:

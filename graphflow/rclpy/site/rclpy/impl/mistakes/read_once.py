@@ -26,6 +26,7 @@ _FOLLOWING = {
 def without_effect(cls: type, name: str) -> str:
     """Return a sentence about a parameter that is read only in a constructor; "" if it may be read later."""
     first: Place | None = None
+    is_period = False
     for parent in cls.__mro__:
         source = definition_of(parent) if is_users_module(parent.__module__) else None
         if source is None:
@@ -43,13 +44,32 @@ def without_effect(cls: type, name: str) -> str:
         reads = [call.lineno for call in known.values() if last_name(call.func) in _READING or call in used]
         if reads and first is None:
             first = Place(Path(file).name, min(reads))
+            is_period = _is_period(definition, [call for call in known.values() if call.lineno == first.line])
     if first is None:
         return ""
+    if is_period:
+        way = f"make a new one in a callback of add_on_set_parameters_callback, or start again with -p {name}:=VALUE"
+        return f"{first}: {name!r} is set without effect, since a timer keeps its period; {way}"
     read = f"self.get_parameter({name!r}).value"
     return (
         f"{first}: {name!r} is set without effect, since only the constructor reads it; read {read} where it is used, "
         "or follow it with add_on_set_parameters_callback"
     )
+
+
+def _is_period(definition: ast.ClassDef, reads: list[ast.Call]) -> bool:
+    """Whether the period of a timer is computed from the results of some calls, directly or by variables."""
+    nodes, kept = nodes_in(definition), set[str]()
+
+    def comes_from_reads(value: ast.AST) -> bool:
+        parts = nodes_in(value)
+        return any(p in reads or (isinstance(p, (ast.Name, ast.Attribute)) and ast.unparse(p) in kept) for p in parts)
+
+    for node in nodes:
+        if isinstance(node, ast.Assign) and comes_from_reads(node.value):
+            kept |= {ast.unparse(target) for target in node.targets}
+    timers = [node for node in nodes if isinstance(node, ast.Call) and last_name(node.func) == "create_timer"]
+    return any(comes_from_reads(timer.args[0]) for timer in timers if timer.args)
 
 
 def _word(node: ast.Name | ast.Attribute | ast.alias) -> str:

@@ -71,6 +71,24 @@ def test_other_ways_to_read_it_once(code: str, line: int, written: Written) -> N
 
 
 @pytest.mark.parametrize(
+    "lines",
+    [
+        '        self.create_timer(self.get_parameter("speed").value, self.tick)\n',
+        KEEP + "        self.create_timer(1.0 / self.speed, self.tick)\n",
+        '        speed = self.get_parameter("speed").value\n        period = 1 / speed\n'
+        "        self.timer = self.create_timer(period, self.tick)\n",
+    ],
+)
+def test_a_period_that_is_read_once(lines: str, written: Written) -> None:
+    """A timer keeps it, wherever it is read."""
+    text = without_effect(written(HEAD + lines + "    def tick(self):\n        pass\n").Car, "speed")
+    assert text.endswith(
+        ".py:8: 'speed' is set without effect, since a timer keeps its period; make a new one in a callback of "
+        "add_on_set_parameters_callback, or start again with -p speed:=VALUE"
+    )
+
+
+@pytest.mark.parametrize(
     "code",
     [
         HEAD + TICK,
