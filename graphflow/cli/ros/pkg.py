@@ -68,21 +68,23 @@ def executables(package: str, full_path: bool, as_json: bool) -> int:
 
     rows = [row for row in all_executables(_root()) if package in ("", row.package)]
     own = find_workspace(Path.cwd()).packages.get(package)
-    for fault in own.faults if own is not None else ():
+    faults = own.faults if own is not None else []
+    for fault in faults:
         output.error(fault)
+    code = exits.FAILED if faults else exits.OK
     if not rows and package in _known():
         output.talk(f"the package {package!r} has no executable that graphflow can run")
-        return exits.OK
+        return code
     if not rows:
         output.error(f"Package '{package}' not found{_hint(package)}")
         return exits.FAILED
     if as_json:
         output.as_json([{"package": r.package, "name": r.name, "class": r.class_path} for r in rows])
-        return exits.OK
+        return code
     for row in rows:
         where = row.class_path.partition(":")[0].replace(".", "/")
         output.data(f"{where}.py" if full_path else f"{row.package} {row.name}")
-    return exits.OK
+    return code
 
 
 @pkg.command()

@@ -72,9 +72,11 @@ def import_class(class_path: str) -> type[Node]:
 
 def _hidden(module: ModuleType) -> str:
     """Return a hint if a file of the project has the name of a module that was imported from elsewhere; else empty."""
+    if module.__file__ is None or any(Path(module.__file__).is_relative_to(root) for root in _roots):
+        return ""
     for root in _roots:
         file = Path(root, *module.__name__.split(".")).with_suffix(".py")
-        if file.is_file() and module.__file__ and not file.samefile(module.__file__):
+        if file.is_file():
             return f"; {file.name} here is hidden by {module.__file__}: rename it, as in my_{file.name}"
     return ""
 
