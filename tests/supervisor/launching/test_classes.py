@@ -46,6 +46,8 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setattr(sys, "path", list(sys.path))
     monkeypatch.setattr(classes, "_roots", [])
     monkeypatch.setattr(registry, "_roots", [])
+    import numpy  # noqa: F401 - it cannot be imported again, once it is forgotten with the others
+
     with patch.dict(sys.modules):
         add_root(str(folder.parent))
         yield folder.parent
