@@ -44,7 +44,7 @@ _SHARED: Mapping[EndpointKind, str] = {
     "publisher": "publish {}, and the robot obeys the latest",
     "subscription": "subscribe to {}, and all obey each command",
 }
-"""What nodes do with commands that they share."""
+"""Effects of sharing commands, by the kind of endpoint."""
 _EVERYWHERE = ("/clock", "/rosout", "/parameter_events", "/tf", "/tf_static")
 """Topics of tools and of every node."""
 

@@ -25,7 +25,7 @@ logger = logging.getLogger("graphflow")
 
 
 _made = Counter[Place]()
-"""How often each line has created a buffer in a callback."""
+"""The number of buffers that each line has created in callbacks."""
 
 
 def warn_of_new() -> None:
