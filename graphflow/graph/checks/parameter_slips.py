@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import linecache
 import re
-from collections.abc import Collection, Container, Iterator
+from collections.abc import Collection, Container
 
-from graphflow.errors import GraphflowError, Place, Problem
+from graphflow.errors import GraphflowError, Place
 from graphflow.graph.model import NodeSpec, keys_of
 from graphflow.graph.plan import Setting
 from graphflow.interface import Parameter
 from graphflow.markup import source, yaml_slips
 from graphflow.markup.expressions import ExpressionError, evaluate
+from graphflow.markup.source import Complain
 from graphflow.markup.substitution_words import as_argument
 from graphflow.markup.tree import Item
 from graphflow.names import nearest
@@ -44,8 +45,8 @@ def value_correction(declared: Parameter, setting: Setting) -> str:
     return f"leave out the quotes: {declared.name}: {value.strip()}"
 
 
-def texts_for_arguments(params: Item | None, args: Container[str]) -> Iterator[Problem]:
-    """Yield a remark on each parameter whose value is its own name, which is also that of an argument.
+def remark_on_texts(params: Item | None, args: Container[str], remark: Complain) -> None:
+    """Remark on each parameter whose value is its own name, which is also that of an argument.
 
     Args:
         params: The parameters as they are written, without their substitutions.
@@ -53,7 +54,7 @@ def texts_for_arguments(params: Item | None, args: Container[str]) -> Iterator[P
     for name, value in params.entries.items() if params is not None else ():
         if value.value == name and name in args:
             way = as_argument(name, value.place.file)
-            yield Problem(value.place, f"{name!r} is a text here; for the argument of that name write {way}")
+            remark(value.place, f"{name!r} is a text here; for the argument of that name write {way}")
 
 
 def _fits(declared: Parameter, text: str) -> bool:

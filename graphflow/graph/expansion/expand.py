@@ -17,7 +17,7 @@ from pathlib import Path
 from pydantic import BaseModel
 
 from graphflow.errors import GraphFileError, InvalidName, Place, Problem
-from graphflow.graph.checks.parameter_slips import texts_for_arguments
+from graphflow.graph.checks.parameter_slips import remark_on_texts
 from graphflow.graph.checks.taken_names import taken
 from graphflow.graph.checks.validation import M, Problems, colon_fault, example, unknown_key, validated
 from graphflow.graph.expansion.arguments import Arguments, arguments_after_name
@@ -340,8 +340,7 @@ class Expansion:
                 self._problems.add_unless_ros(item.at, f"there is a node {taken} already; this one is called {name}")
         if self._is_taken(name, item, scope, self.nodes, "nodes"):
             return
-        for slip in texts_for_arguments(item.entries.get("params"), scope.values):
-            self._problems.remark(*slip)
+        remark_on_texts(item.entries.get("params"), scope.values, self._problems.remark)
         with self._problems.of_node(name):
             item = self._values.substituted(
                 item.without("if", "unless", "template", "namespace"), scope, ("args", "command"), _TEXTS

@@ -9,8 +9,8 @@ import pytest
 from graphflow.errors import Place
 from graphflow.graph.checks.parameter_slips import (
     misplaced_key,
+    remark_on_texts,
     set_in_a_method,
-    texts_for_arguments,
     value_correction,
 )
 from graphflow.graph.plan import Setting
@@ -104,7 +104,8 @@ def test_a_parameter_that_a_method_sets(tmp_path: Path) -> None:
 def test_texts_for_arguments() -> None:
     """A value is meant as an argument only where parameter and argument have that name."""
     written = source.read("{rate: rate, map: $(var map), frame: map, mode: mode}", "g.launch.py")
-    found = texts_for_arguments(tree(written), {"rate", "map"})
+    found: list[str] = []
+    for params in (tree(written), None):
+        remark_on_texts(params, {"rate", "map"}, lambda place, text: found.append(f"{place}: {text}"))
     way = "write LaunchConfiguration('rate')"
-    assert [*map(str, found)] == [f"g.launch.py:1:8: 'rate' is a text here; for the argument of that name {way}"]
-    assert [*texts_for_arguments(None, {"rate"})] == []
+    assert found == [f"g.launch.py:1:8: 'rate' is a text here; for the argument of that name {way}"]
