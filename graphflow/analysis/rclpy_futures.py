@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Container, Iterator
+from typing import NamedTuple
 
 from graphflow.analysis.syntax import is_nested, last_name, nodes_in, walk
 
@@ -84,25 +85,48 @@ def early_questions(module: ast.AST) -> Iterator[tuple[int, str]]:
                     )
 
 
+class EarlyReturn(NamedTuple):
+    """A line that returns the result of a future which nothing in its function waits for."""
+
+    function: str
+    line: int
+    text: str
+
+
 def early_results(module: ast.AST) -> Iterator[tuple[int, str]]:
     """Find lines that return the result of a future which nothing in their function waits for."""
+    for found in early_returns(module):
+        yield found.line, found.text
+
+
+def early_returns(module: ast.AST) -> Iterator[EarlyReturn]:
+    """Find the same, each with the name of its function."""
     for function in nodes_in(module):
         if not isinstance(function, ast.FunctionDef):
             continue
         names = [last_name(part) for part in nodes_in(function) if isinstance(part, (ast.Attribute, ast.Name))]
         if any(map(_WAITING.search, names)):
             continue
-        parts = [part for part, _ in walk(function, into_functions=False)]
         made: dict[str, int] = {}
-        for part in parts:
+        results: dict[str, tuple[str, int]] = {}
+        for part in [part for part, _ in walk(function, into_functions=False)]:
             match part:
                 case ast.Assign(targets=[target], value=ast.Call(func=ast.Attribute(attr=verb))) if verb in _ASKING:
                     made[dotted(target)] = part.lineno
-        for part in parts:
-            match part:
-                case ast.Return(value=ast.Call(func=ast.Attribute(value=owner, attr="result"))) if (
-                    dotted(owner) in made
-                ):
-                    future = dotted(owner)
-                    text = f"{future}.result() is None there, since nothing spins after line {made[future]}"
-                    yield part.lineno, f"{text}; write before it: rclpy.spin_until_future_complete(node, {future})"
+                case ast.Assign(targets=[target], value=value) if future := _owner(value, made):
+                    results[dotted(target)] = future, part.lineno
+                case ast.Return(value=value) if value is not None:
+                    future, line = results.get(ast.unparse(value), (_owner(value, made), part.lineno))
+                    if future:
+                        text = f"{future}.result() is None there, since nothing spins after line {made[future]}"
+                        node = "self" if [a.arg for a in function.args.args[:1]] == ["self"] else "node"
+                        way = f"write before it: rclpy.spin_until_future_complete({node}, {future})"
+                        yield EarlyReturn(function.name, line, f"{text}; {way}")
+
+
+def _owner(value: ast.expr, made: Container[str]) -> str:
+    """Return the name of the future whose result an expression is, if it is one of these; else empty."""
+    match value:
+        case ast.Call(func=ast.Attribute(value=owner, attr="result")) if dotted(owner) in made:
+            return dotted(owner)
+    return ""

@@ -58,7 +58,7 @@ def did_you_mean_topic(own: Entity, there: ByType) -> str:
     within = own.namespace + own.name
     best = within if within in near else nearest(own.name, sorted(near), cutoff=0.0)
     if best is None:
-        return _only_one_of_type(own, names)
+        return _only_one_of_type(own, names) or _only_two_apart(own, there)
     first, *more = sorted({e.node_name for e in others if e.name == best and not is_hidden(e.node_name)})
     who = f"{first} and {len(more)} more" if more else first
     if own.kind is Kind.PUBLISHER:
@@ -90,6 +90,26 @@ def _only_one_of_type(own: Entity, names: Iterable[str]) -> str:
     if place != other_place or not (ours > theirs or theirs > ours):
         return ""
     return f"nobody publishes {own.name} [{own.type}]; the only topic of this type is {only[0]!r}"
+
+
+def _only_two_apart(own: Entity, there: ByType) -> str:
+    """Return a message that a subscription has no publisher, while the only other topic with one end has no listener.
+
+    Both may be meant so; for the only two of a type, whose names have no word in common, it is likely that they come
+    from two examples.
+    """
+    heard = [e for e in there.get((Kind.SUBSCRIPTION, own.type), ()) if not is_hidden(e.node_name)]
+    sent = [e for e in there.get((Kind.PUBLISHER, own.type), ()) if not is_hidden(e.node_name)]
+    apart = {e.name for e in (*heard, *sent)} - ({e.name for e in heard} & {e.name for e in sent})
+    other = next((e for e in sent if e.name in apart and not _is_of_one_node(e, own)), None)
+    if own.kind is not Kind.SUBSCRIPTION or len(apart) != 2 or other is None or _words(own.name) & _words(other.name):
+        return ""
+    text = f"nobody publishes {own.name} [{own.type}], and nobody listens to {other.name} of {other.node_name}"
+    return f"{text}: if they belong together, give them one name"
+
+
+def _words(name: str) -> set[str]:
+    return {word for part in name.split("/") for word in part.split("_") if word}
 
 
 def of_other_kind(own: Entity, named: Iterable[Entity]) -> str:

@@ -61,7 +61,7 @@ def send(self, request):
 def test_a_result_that_is_returned_at_once() -> None:
     """It is None; the line is told with what to write before it."""
     text = "future.result() is None there, since nothing spins after line 2"
-    way = "write before it: rclpy.spin_until_future_complete(node, future)"
+    way = "write before it: rclpy.spin_until_future_complete(self, future)"
     assert list(early_results(ast.parse(SENDS.format("print('sent')")))) == [(4, f"{text}; {way}")]
 
 

@@ -86,6 +86,33 @@ def test_a_slash_at_the_other_end() -> None:
         )
 
 
+@pytest.mark.parametrize(
+    ("others", "is_told"),
+    [
+        ([(Kind.PUBLISHER, "talker", "/topic")], True),
+        ([(Kind.PUBLISHER, "talker", "/topic"), (Kind.SUBSCRIPTION, "_graphflow_7", "/topic")], True),
+        ([(Kind.PUBLISHER, "talker", "/topic"), (Kind.SUBSCRIPTION, "log", "/topic")], False),
+        ([(Kind.PUBLISHER, "talker", "/topic"), (Kind.PUBLISHER, "other", "/status")], False),
+        ([(Kind.PUBLISHER, "talker", "/topic"), (Kind.SUBSCRIPTION, "other", "/news")], False),
+        ([(Kind.PUBLISHER, "listener", "/topic")], False),
+        ([], False),
+    ],
+)
+def test_the_only_two_ends_of_a_type(others: list[tuple[Kind, str, str]], is_told: bool) -> None:
+    """They probably belong together, whatever they are called; the publisher may well have no listener yet."""
+    own = endpoint(Kind.SUBSCRIPTION, "listener", "/chatter")
+    ends = [endpoint(*other)._replace(zid=other[1]) for other in others]
+    own = own._replace(zid="listener")
+    text = did_you_mean_topic(own, by_type([own, *ends], {TWIST}))
+    expected = (
+        f"nobody publishes /chatter [{TWIST}], and nobody listens to /topic of /talker: if they belong together, give "
+        "them one name"
+    )
+    assert text == (expected if is_told else "")
+    if is_told:
+        assert did_you_mean_topic(ends[0], by_type([own, *ends], {TWIST})) == ""
+
+
 def test_what_was_meant_by_a_subscription() -> None:
     """Is told in its words; of several nodes one is named."""
     own = endpoint(Kind.SUBSCRIPTION, "base", "/cmd_vl")

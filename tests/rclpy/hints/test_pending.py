@@ -3,22 +3,34 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
+import rclpy
+from rclpy.node import Node
 from rclpy.task import Future
 from tests.rclpy.hinted import hint_of
 
 HEAD = "class Lamp:\n    def tick(self, future):\n        self.future = future\n"
-TEXT = "{}.result() (lamp.py:{}) is None until the future is done: {}.add_done_callback(...), or await it"
+TEXT = (
+    "{}.result() (lamp.py:{}) is None until the future is done: write before it: "
+    "rclpy.spin_until_future_complete(self, {})"
+)
+
+
+def lamp(tmp_path: Path, body: str) -> Any:
+    """The class of a file, with that body of its method."""
+    file = tmp_path / "lamp.py"
+    file.write_text(source := HEAD + "".join(f"        {line}\n" for line in body.splitlines()))
+    space: dict[str, Any] = {"__name__": "lamp"}
+    exec(compile(source, str(file), "exec"), space)
+    return space["Lamp"]
 
 
 def told(tmp_path: Path, body: str, future: object) -> str:
-    file = tmp_path / "lamp.py"
-    file.write_text(source := HEAD + "".join(f"        {line}\n" for line in body.splitlines()))
-    space: dict[str, object] = {"__name__": "lamp"}
-    exec(compile(source, str(file), "exec"), space)
-    return hint_of(lambda: space["Lamp"]().tick(future))  # type: ignore[operator]
+    return hint_of(lambda: lamp(tmp_path, body)().tick(future))
 
 
 @pytest.mark.parametrize(
@@ -31,6 +43,15 @@ def told(tmp_path: Path, body: str, future: object) -> str:
 def test_a_result_that_is_read_early(tmp_path: Path, body: str, path: str, line: int) -> None:
     """The line is named that reads it."""
     assert told(tmp_path, body, Future()) == TEXT.format(path, line, path)
+
+
+def test_a_result_that_is_read_early_in_a_callback(node: Node, tmp_path: Path) -> None:
+    """It cannot spin there."""
+    made = lamp(tmp_path, "response = future.result()\nresponse.sum")()
+    node.create_timer(0.01, lambda: made.tick(Future()))
+    assert hint_of(lambda: rclpy.spin_once(node)) == (
+        "future.result() (lamp.py:4) is None until the future is done: future.add_done_callback(...), or await it"
+    )
 
 
 @pytest.mark.parametrize(
@@ -51,3 +72,22 @@ def test_a_result_that_is_none(tmp_path: Path) -> None:
     future: Future[None] = Future()
     future.set_result(None)
     assert told(tmp_path, "response = future.result()\nresponse.sum", future) == ""
+
+
+@pytest.mark.parametrize("returned", ["future.result()", "result"])
+def test_a_result_that_a_function_returns_early(tmp_path: Path, returned: str) -> None:
+    """The line is named in that function."""
+    source = (
+        "def ask(client):\n    future = client.call_async(1)\n    result = future.result()\n"
+        f"    return {returned}\n\ndef main(client):\n    response = ask(client)\n    print(response.sum)\n"
+    )
+    file = tmp_path / "lamp.py"
+    file.write_text(source)
+    space: dict[str, Any] = {"__name__": "lamp"}
+    exec(compile(source, str(file), "exec"), space)
+    client = SimpleNamespace(call_async=lambda _: Future())
+    line = 3 if returned == "result" else 4
+    assert hint_of(lambda: space["main"](client)) == (
+        f"lamp.py:{line}: future.result() is None there, since nothing spins after line 2; write before it: "
+        "rclpy.spin_until_future_complete(node, future)"
+    )

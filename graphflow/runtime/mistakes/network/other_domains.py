@@ -28,7 +28,7 @@ def look_elsewhere(
     if any(other != node for other in here.cache.nodes(hidden=False)):
         report("")
         return
-    way = COMMANDS if is_hidden(node) else f"start it with {domain_variable()}={{}} to join"
+    way = COMMANDS if is_hidden(node) else f"if that is yours, join it with {domain_variable()}={{}}"
 
     def answered(tokens: list[str]) -> None:
         among = with_counterpart(lacking, tokens) if lacking else None

@@ -17,7 +17,7 @@ ALONE = "this domain, 0, has no other nodes; domain 7 has 1: "
 
 @pytest.mark.parametrize(
     ("name", "way"),
-    [("n", "start it with GRAPHFLOW_DOMAIN=7 to join"), ("_graphflow_1", "graphflow --domain 7 ...")],
+    [("n", "if that is yours, join it with GRAPHFLOW_DOMAIN=7"), ("_graphflow_1", "graphflow --domain 7 ...")],
 )
 async def test_an_error_says_so(name: str, way: str, graph: Graph, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a service and of an action, with how a node, or a command, gets there."""

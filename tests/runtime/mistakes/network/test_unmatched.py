@@ -191,7 +191,7 @@ async def test_another_domain(
         open_publisher(node)
         await graph.clock.advance(60.0)
     assert [record.getMessage() for record in caplog.records if record.name == "graphflow.node.n"] == [
-        "this domain, 0, has no other nodes; domain 7 has 1: start it with GRAPHFLOW_DOMAIN=7 to join"
+        "this domain, 0, has no other nodes; domain 7 has 1: if that is yours, join it with GRAPHFLOW_DOMAIN=7"
     ]
 
 
