@@ -31,9 +31,9 @@ def remedy(way: str, domains: Collection[int]) -> str:
 
 
 def with_counterpart(lacking: Iterable[Entity], tokens: Iterable[str]) -> set[int]:
-    """Return the domains that have a counterpart of one of these endpoints, under the same name."""
-    wanted = {(COUNTERPARTS[own.kind], own.name) for own in lacking}
-    return {e.domain for e in map(parse_token, tokens) if e is not None and (e.kind, e.name) in wanted}
+    """Return the domains that have a counterpart of one of these endpoints, of the same name and type."""
+    wanted = {(COUNTERPARTS[own.kind], own.name, own.type) for own in lacking}
+    return {e.domain for e in map(parse_token, tokens) if e is not None and (e.kind, e.name, e.type) in wanted}
 
 
 def elsewhere(

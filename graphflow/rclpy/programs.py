@@ -206,7 +206,8 @@ def _note_other(program: Program, file: str | None) -> None:
         first = program.workspace.packages[double.name].folder
         if program.file.is_relative_to(first) or program.file.is_relative_to(double.folder):
             text = f"{double.folder} is not used, since {first} is called {double.name!r}, too"
-            sys.stderr.write(f"note: {text}; rename one, or put an empty file COLCON_IGNORE into it\n")
+            way = "rename one, in package.xml and setup.py, or put an empty file COLCON_IGNORE into it"
+            sys.stderr.write(f"note: {text}; {way}\n")
 
 
 def _print_error(

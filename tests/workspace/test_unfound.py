@@ -150,6 +150,17 @@ def test_a_folder_of_that_name(workspace: Workspace, name: str, why: str) -> Non
     assert said.startswith(why)
 
 
+def test_a_copied_package_whose_manifest_was_forgotten(workspace: Workspace) -> None:
+    """The folder and its setup.py have the new name, so that of the manifest is left from before."""
+    folder = write(workspace.root / "src" / "copied", package_xml=manifest("lamp"))
+    (folder / "setup.py").write_text("from setuptools import setup\nsetup(name='copied')\n")
+    assert why_no_package("copied", find_workspace(workspace.root)) == (
+        "src/copied/package.xml has the name 'lamp', and setup.py beside it 'copied': write <name>copied</name>"
+    )
+    (folder / "setup.py").write_text("from setuptools import setup\nsetup(name='lamp')\n")
+    assert str(why_no_package("copied", find_workspace(workspace.root))).endswith("package.xml; use that name")
+
+
 def test_the_folder_that_the_user_is_in(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also from within, where there is no workspace."""
     inner = write(tmp_path / "dark" / "dark")

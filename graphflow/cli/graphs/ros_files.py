@@ -15,6 +15,7 @@ from graphflow.graph import params_file
 from graphflow.graph.model import GraphFile, keys_of
 from graphflow.names import nearest
 from graphflow.reading import lenient_text
+from graphflow.workspace.manifest import name_fault
 from graphflow.workspace.packages import find_workspace
 from graphflow.workspace.project import shown
 
@@ -62,11 +63,13 @@ def check_setup(file: Path, *, as_json: bool) -> int:
     Raises:
         UsageFault: It is not that of a package.
     """
-    folder = file.resolve().parent
-    package = next((p for p in find_workspace(file).packages.values() if p.folder.resolve() == folder), None)
+    folder, workspace = file.resolve().parent, find_workspace(file)
+    known = (*workspace.packages.values(), *workspace.doubles)
+    package = next((p for p in known if p.folder.resolve() == folder), None)
     if package is None:
         raise UsageFault(f"{file} is not that of a ROS package: there is no package.xml beside it")
     faults = [fault for name in package.executables if (fault := package.fault_of(name) or package.copy_fault(name))]
+    faults += filter(None, [name_fault(package.folder, package.name)])
     problems = [_problem(fault) for fault in faults]
     if why := package.why_no_executable:
         problems.append(Problem(Place(str(file)), why.removeprefix("; ").removeprefix(f"{package.setup.file} ")))

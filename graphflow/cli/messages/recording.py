@@ -32,6 +32,8 @@ REPEATED = 1000
 """Most messages of a topic that are repeated in each file."""
 SLOWEST, FASTEST = 1e-6, 1e6
 """Bounds of a topic's recording rate, in Hz."""
+UNNAMED = "rosbag2_"
+"""The beginning of a bag's name where none is given."""
 SILENT = 2.0
 """Seconds after which missing topics are reported."""
 
@@ -67,7 +69,7 @@ def run(choice: Choice, options: RecordOptions) -> int:
     check_node_name(options.node_name)
     qos = {} if options.qos_path is None else read_overrides(options.qos_path)
     custom = dict(_pair(word) for word in options.custom_data)
-    folder = options.folder or Path(time.strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
+    folder = options.folder or Path(time.strftime(f"{UNNAMED}%Y_%m_%d-%H_%M_%S"))
     rates = _rates(options.topic_throttle_frequency)
     repeats = Repeats(
         _by_topic("--repeat-transient-local", options.repeat_transient_local), options.repeat_all_transient_local
@@ -163,7 +165,7 @@ async def _record(
         else:
             _report(node, f"Recording into {writer.folder}")
         shown = asyncio.ensure_future(_show(recorder, began)) if sys.stderr.isatty() else None
-        warned = asyncio.ensure_future(_warn_later(node, recorder))
+        warned = asyncio.ensure_future(_warn_later(node, recorder, writer.folder))
         try:
             async with asyncio.timeout(options.duration):
                 await recorder.run()
@@ -193,23 +195,30 @@ def _sum_up(node: Node, recorder: Recorder, writer: BagWriter, seconds: float) -
         output.talk(f"WARNING: {recorder.dropped:,} messages were dropped: they came faster than they could be written")
     if recorder.lost:
         output.talk(f"WARNING: {recorder.lost:,} messages never arrived, by the sequence numbers of their publishers")
-    _warn_of_missing(node, recorder)
+    _warn_of_missing(node, recorder, writer.folder)
     if not recorder.topics:
         output.talk("no topic appeared to be recorded; `graphflow topic list` shows all topics")
 
 
-async def _warn_later(node: Node, recorder: Recorder) -> None:
+async def _warn_later(node: Node, recorder: Recorder, folder: Path) -> None:
     await node.clock.sleep(SILENT)
-    _warn_of_missing(node, recorder)
+    _warn_of_missing(node, recorder, folder)
     if not set(node.context.cache.nodes(hidden=False)) - {node.full_name}:
         output.talk(await node.offload(nothing_here, "no nodes"))
 
 
-def _warn_of_missing(node: Node, recorder: Recorder) -> None:
-    """Warn about topics that were named, to be recorded or with an option, but have not appeared."""
+def _warn_of_missing(node: Node, recorder: Recorder, folder: Path) -> None:
+    """Warn about topics that were named, to be recorded or with an option, but have not appeared.
+
+    Args:
+        folder: The bag, whose name may have been written as a topic.
+    """
     for name in recorder.missing:
         service, cache = name.removesuffix(EVENTS), node.context.cache
-        output.talk(f"WARNING: {cache.unpublished(name) if service == name else cache.without_events(service)}")
+        text = cache.unpublished(name) if service == name else cache.without_events(service)
+        if recorder.topics and folder.name.startswith(UNNAMED) and name.count("/") == 1 and "did you mean" not in text:
+            text += f"; if {name[1:]} is the name of the bag, write -o {name[1:]}"
+        output.talk(f"WARNING: {text}")
     for text in recorder.unused_options:
         output.talk(f"WARNING: {text}")
 

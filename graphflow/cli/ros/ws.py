@@ -93,6 +93,8 @@ def _package_faults(workspace: Workspace) -> Iterator[str]:
     yield from filter(None, map(_unbuilt_interfaces, packages))
     for double in workspace.doubles:
         first = workspace.packages[double.name].folder
+        if (wrong_name := name_fault(double.folder, double.name)) is not None:
+            yield wrong_name
         yield f"{double.folder}: another package is called {double.name!r}, too, and takes precedence: {first}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import reprlib
+import sys
 from collections.abc import Iterator
 from types import FrameType
 from typing import Any
@@ -240,7 +241,21 @@ def _fields(cls: type[StrictMessage], name: str) -> str:
         return f"it is in a nested message: .{below}"
     near = nearest(name, names)
     listed = ", ".join(names) or "no fields"
-    return f"{cls.__name__} has {listed}" + (f"; did you mean {near!r}?" if near is not None else "")
+    hint = _elsewhere(cls, name) or (f"; did you mean {near!r}?" if near is not None else "")
+    return f"{cls.__name__} has {listed}{hint}"
+
+
+def _elsewhere(cls: type[StrictMessage], name: str) -> str:
+    """Return a hint if another part of the service or action has the field; empty otherwise."""
+    whole, _, own = cls.__name__.rpartition("_")
+    of_type = getattr(sys.modules.get(cls.__module__.rpartition(".")[0]), whole, None)
+    for order in (("Request", "Response"), ("Goal", "Result", "Feedback")):
+        for part in order if own in order else ():
+            other = getattr(of_type, part, None)
+            if part != own and other is not None and any(field.name == name for field in other.SCHEMA.fields):
+                text = f"; {name} is in {whole}.{part}: use that, or correct the order of the definition"
+                return f"{text}, {' --- '.join(order).lower()}"
+    return ""
 
 
 def _paths(cls: type[StrictMessage], name: str) -> Iterator[str]:

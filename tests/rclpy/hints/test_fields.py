@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
 from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Path as Route
@@ -88,6 +89,17 @@ ONE = "dimensions, and the field one: write "
         ("2 * value", "value is a ParameterValue: write get_parameter('name').value in place of"),
         ("2 * param.get_parameter_value()", "a parameter's value is in .value: write that in place of"),
         ("2 * None", ""),
+        (
+            "Fibonacci.Feedback().order",
+            "Fibonacci_Feedback has sequence; order is in Fibonacci.Goal: use that, or correct the order of the "
+            "definition, goal --- result --- feedback",
+        ),
+        (
+            "AddTwoInts.Request().sum",
+            "AddTwoInts_Request has a, b; sum is in AddTwoInts.Response: use that, or correct the order of the "
+            "definition, request --- response",
+        ),
+        ("AddTwoInts.Request().some", "AddTwoInts_Request has a, b"),
         ("Int32(data=1.5)", "data is an int: write int(...)"),
         ("Twist(linear=1.5)", "linear is a Vector3: set its fields, as in linear.x = ..."),
     ],
@@ -100,6 +112,7 @@ def test_values_of_fields(tmp_path: Path, line: str, sentence: str) -> None:
     known |= {"b": Bool(), "j": JointState(), "route": Route()}
     known |= {"Int32": Int32, "Twist": Twist, "Vector3": Vector3, "param": Parameter("n", value=1)}
     known |= {"time": time, "value": ParameterValue(), "image": Image(), "joints": JointState(), "zeros": np.zeros}
+    known |= {"Fibonacci": Fibonacci, "AddTwoInts": AddTwoInts}
     known |= {"made": Twist, "matrix": np.zeros((1, 1)), "float32": np.float32, "int64": np.int64}
     found = hint_of(lambda: exec(compile(line, str(file), "exec"), known))
     assert found.startswith(sentence) if sentence else found == ""
@@ -121,5 +134,7 @@ def test_arguments_of_a_service_in_the_wrong_order() -> None:
     for wrong in (swapped, reads):
         way = f"a service's callback receives the request first: def {wrong.__name__}(request, response)"
         assert hint_of(partial(wrong, request, response)) == way
-    assert hint_of(lambda: right(request, response)) == "AddTwoInts_Request has a, b"
-    assert hint_of(lambda: reads(response, AddTwoInts.Response())) == "AddTwoInts_Response has sum"
+    assert hint_of(lambda: right(request, response)).startswith("AddTwoInts_Request has a, b; sum is in AddTwoInts.Res")
+    assert hint_of(lambda: reads(response, AddTwoInts.Response())).startswith(
+        "AddTwoInts_Response has sum; a is in Add"
+    )

@@ -6,6 +6,7 @@ import inspect
 import linecache
 import re
 from asyncio import InvalidStateError
+from types import FrameType
 from typing import NamedTuple
 
 from graphflow.analysis.hiding import hidden
@@ -103,6 +104,11 @@ REMARKS = (
         r"^Transform\.__init__\(\) got an unexpected keyword argument '(rpy|translation|rotation)'",
         "",
         "write Transform.of(parent, child, (x, y, z), rpy=(0.0, 0.0, yaw))",
+    ),
+    Remark(
+        "ClientGoalHandle.*await",
+        r"await\s+(?P<name>\w+)",
+        "that is the goal at the server: write await {name}.result()",
     ),
     Remark(_COROUTINE, "", "that is a coroutine: write await before the call"),
     Remark(
@@ -310,14 +316,21 @@ def _of_kind(error: BaseException, line: str) -> str:
         return "that is a coroutine: in a thread write call_sync(...) for call(...); else write async def, and await"
     from graphflow.runtime.mistakes.errors.class_errors import class_in_place  # most programs never need them
     from graphflow.runtime.mistakes.errors.indices import advise_on_index
+    from graphflow.runtime.mistakes.errors.unawaited_calls import line_without_await
 
+    if is_used and (frames := _frames(error)) and (way := line_without_await(frames[-1], line)):
+        return way
     return class_in_place(error) or advise_on_index(error, line, lambda path: _named(error, path))
 
 
 def _named(error: BaseException, path: str) -> object:
     """Return the object that a dotted name refers to in the user's line that raised an error."""
-    frames = [part.tb_frame for part in parts_of(error.__traceback__) if is_users(part.tb_frame.f_code.co_filename)]
-    return named_in(frames[-1], path) if frames else None
+    return named_in(frames[-1], path) if (frames := _frames(error)) else None
+
+
+def _frames(error: BaseException) -> list[FrameType]:
+    """Return the user's own frames of an error."""
+    return [part.tb_frame for part in parts_of(error.__traceback__) if is_users(part.tb_frame.f_code.co_filename)]
 
 
 def _is_in_coroutine(error: BaseException) -> bool:
