@@ -18,6 +18,7 @@ from graphflow.errors import Place, Problem, UsageFault
 from graphflow.graph.checks.check import check
 from graphflow.graph.plan import Plan, PlannedNode
 from graphflow.interface import Interface
+from graphflow.msgs.registry import KINDS
 from graphflow.reading import found_text
 from graphflow.supervisor.launching.probe import probe
 from graphflow.supervisor.launching.probed import read_interfaces, slips_in
@@ -38,6 +39,8 @@ def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
     for path in paths:
         if not path.exists():
             raise UsageFault(f"there is no file {path}")
+        if path.is_file() and path.suffix != ".py":
+            raise UsageFault(f"{path} is not source: check it by itself, graphflow check {path}")
         for file in files_in(path):
             if (fault := _unreadable(file)) is not None:
                 found.problems.append(fault)
@@ -54,11 +57,16 @@ def check_sources(paths: Sequence[Path], *, as_json: bool) -> int:
                 found.ways += ways
     has_files = any(path.is_file() for path in paths)
     if not (found.nodes or found.is_rclpy or found.problems or has_files):
-        raise UsageFault(f"{' '.join(map(str, paths))}: no nodes, of graphflow or of rclpy{_graphs_in(paths)}")
+        way = _graphs_in(paths, "*.yaml", "graphs/*.yaml") or _interfaces_in(paths)
+        raise UsageFault(f"{' '.join(map(str, paths))}: no nodes, of graphflow or of rclpy{way}")
     _report(paths, found, as_json=as_json)
     if found.problems:
         return exits.USAGE
     return exits.FAILED if any(way.grade == "CERTAIN" for way in found.ways) else exits.OK
+
+
+_SHOWN = 5
+"""Graph files that a hint names."""
 
 
 @dataclass
@@ -132,7 +140,7 @@ def _report(paths: Sequence[Path], found: _Findings, *, as_json: bool) -> None:
     output.lines(f"{place}: not analysed: the source does not show what ends this loop" for place in found.unfollowed)
     output.lines(str(way) for way in found.ways)
     where = paths[0] if len(paths) == 1 else f"{len(paths)} paths"
-    output.data(f"{where}: {', '.join(_counts(found))}")
+    output.data(f"{where}: {', '.join(_counts(found))}{_graphs_in(paths, 'graphs/*.yaml')}")
 
 
 def _counts(found: _Findings) -> Iterator[str]:
@@ -162,6 +170,19 @@ def place_of(place: Place) -> dict[str, str | int]:
     return {"file": place.file, "line": place.line, "column": place.column}
 
 
-def _graphs_in(paths: Sequence[Path]) -> str:
-    near = sorted(str(file) for path in paths if path.is_dir() for file in path.glob("*.yaml"))
-    return f"; check its graph files one by one: {', '.join(near[:5])}" if near else ""
+def _graphs_in(paths: Sequence[Path], *patterns: str) -> str:
+    """Return a hint to check the graph files of folders, too; empty if there are none.
+
+    Args:
+        patterns: Paths of graph files within a folder.
+    """
+    folders = [path for path in paths if path.is_dir()]
+    near = sorted(str(file) for folder in folders for pattern in patterns for file in folder.glob(pattern))
+    more = f" and {len(near) - _SHOWN} more" if len(near) > _SHOWN else ""
+    return f"; check its graph files one by one: {', '.join(near[:_SHOWN])}{more}" if near else ""
+
+
+def _interfaces_in(paths: Sequence[Path]) -> str:
+    """Return a hint for folders with interface definitions; empty if there are none."""
+    has_some = any((path / kind).is_dir() for path in paths for kind in KINDS)
+    return "; graphflow ws checks its interfaces" if has_some else ""

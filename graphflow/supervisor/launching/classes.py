@@ -134,8 +134,8 @@ def _no_module(module: str, wanted: str, class_name: str, root: str) -> str:
     if near is None:
         parent, _, last = module.rpartition(".")
         beside = [m.name for m in iter_modules(getattr(sys.modules.get(parent), "__path__", []))]
-        hint = _other_project(module, Path(root)) or did_you_mean(last, beside)
-        hint = hint or _above(module, Path(root)) or _in_source_folder(wanted, Path(root)) or _bundled(wanted)
+        hint = _other_project(module, Path(root)) or _in_source_folder(wanted, Path(root)) or _below(wanted, Path(root))
+        hint = hint or did_you_mean(last, beside) or _above(module, Path(root)) or _bundled(wanted)
         hint = hint or f"; modules are looked for in {root}"
     return f"cannot import {wanted}: there is no module {module!r}{hint}"
 
@@ -147,6 +147,16 @@ def _other_project(module: str, root: Path) -> str:
         if (folder / top / "pyproject.toml").is_file() and (folder / top / top).is_dir():
             way = f"cd {folder / top}; others find its modules once it is installed: pip install -e {folder / top}"
             return f"; {folder / top} is a project of its own: {way}"
+    return ""
+
+
+def _below(wanted: str, root: Path) -> str:
+    """Suggest to make a folder of the project, which has a missing module, a project of its own."""
+    path = Path(*wanted.split(".")).with_suffix(".py")
+    for folder in islice(root.iterdir(), _FOLDERS_BOUND):
+        if (folder / path).is_file():
+            way = f"make {folder} a project of its own: touch {folder / 'pyproject.toml'}"
+            return f"; modules are looked for in {root}, and {path} is in {folder}: {way}"
     return ""
 
 

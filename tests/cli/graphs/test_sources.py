@@ -46,7 +46,7 @@ def here(machine: Machine, tmp_path: Path) -> Machine:
         ("nodes", "nodes: 2 node classes, no problems\n"),
         ("nodes/talk.py", "nodes/talk.py: 2 node classes, no problems\n"),
         ("ros", "ros: no deadlocks visible in the source\n"),
-        (".", ".: 2 node classes, no problems\n"),
+        (".", ".: 2 node classes, no problems; check its graph files one by one: graphs/g.yaml\n"),
     ],
 )
 def test_source_without_mistakes(here: Machine, tmp_path: Path, path: str, told: str) -> None:
@@ -85,6 +85,11 @@ def test_deadlocks_in_source(machine: Machine) -> None:
 def test_a_folder_without_nodes(here: Machine, tmp_path: Path) -> None:
     """Its graph files are named."""
     assert "check its graph files one by one: graphs/g.yaml" in here.look("check", "graphs", cwd=tmp_path, code=2)
+    assert here.look("check", "nodes", "graphs/g.yaml", cwd=tmp_path, code=2) == (
+        "error: graphs/g.yaml is not source: check it by itself, graphflow check graphs/g.yaml\n"
+    )
+    (tmp_path / "lamps" / "msg").mkdir(parents=True)
+    assert "; graphflow ws checks its interfaces" in here.look("check", "lamps", cwd=tmp_path, code=2)
 
 
 @pytest.mark.parametrize("verb", ["up", "plan", "launch"])

@@ -66,6 +66,19 @@ def test_a_file_with_the_name_of_a_package(project: Path) -> None:
         import_class("graphflow:Robot")
 
 
+def test_a_folder_of_a_project_with_modules_of_its_own(project: Path) -> None:
+    """It lacks the file that makes it a project."""
+    (project / "lab" / "machines").mkdir(parents=True)
+    (project / "lab" / "machines" / "lamp.py").touch()
+    with pytest.raises(GraphflowError) as caught:
+        import_class("machines.lamp:Lamp")
+    lab = project / "lab"
+    assert str(caught.value) == (
+        "cannot import machines.lamp: there is no module 'machines.lamp'; modules are looked for in "
+        f"{project}, and machines/lamp.py is in {lab}: make {lab} a project of its own: touch {lab}/pyproject.toml"
+    )
+
+
 @pytest.mark.parametrize(
     ("class_path", "problem"),
     [
