@@ -1,4 +1,7 @@
-"""ROS 2's concepts and wire protocol in one pip install, native to asyncio."""
+"""ROS 2's concepts and wire protocol in one pip install, native to asyncio.
+
+PYTEST_DONT_REWRITE: `graphflow rclpy enable` has each Python import this, before pytest could rewrite it.
+"""
 
 from __future__ import annotations
 

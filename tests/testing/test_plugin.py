@@ -7,8 +7,10 @@ import subprocess
 import sys
 
 import pytest
+from _pytest.assertion.rewrite import AssertionRewriter
 
-import graphflow.testing.graph  # noqa: F401 - here and not by a project under test: numpy cannot be imported twice
+import graphflow
+import graphflow.testing.graph  # here and not by a project under test: numpy cannot be imported twice
 from tests.cases import slow
 
 pytest_plugins = ["pytester"]
@@ -64,6 +66,11 @@ def test_a_foreign_project_has_the_fixture(pytester: pytest.Pytester) -> None:
 def run(pytester: pytest.Pytester, test: str, *options: str) -> pytest.RunResult:
     pytester.makepyfile(counter=NODE, test_it=test)
     return pytester.runpytest_inprocess("-p", "no:cacheprovider", *options)
+
+
+def test_pytest_leaves_the_package_as_it_is() -> None:
+    """After `rclpy enable`, Python has imported it already, and pytest would warn that it cannot rewrite it."""
+    assert AssertionRewriter.is_rewrite_disabled(graphflow.__doc__ or "")
 
 
 def test_fixtures_and_parameters_come_along(pytester: pytest.Pytester) -> None:

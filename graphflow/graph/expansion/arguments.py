@@ -33,6 +33,8 @@ class Arguments:
         for text in _no_arguments(given):
             slip = _SLIP.fullmatch(text)
             meant = f"; write {slip[1]}:={slip[2]}" if slip else ""
+            if slip is not None and slip[1] in self._given:  # as in `x:= 1`, which alone gives no value
+                self._given[slip[1]] = slip[2]
             if text.endswith((".yaml", ".yml")):
                 meant = f"; to start {text}, too, have a third file with include: [FILE, FILE]"
             problems.add(COMMAND_LINE, f"{text!r}: an argument is written name:=value{meant}")

@@ -68,10 +68,11 @@ def test_what_they_may_not_be(declared: str, given: str, problem: str) -> None:
 def test_an_argument_with_a_slip(words: str) -> None:
     """Is answered once, with the argument to write."""
     problems = Problems()
-    Arguments([*words.split(), "b:=2", "c:="], problems)
+    arguments = Arguments([*words.split(), "b:=2", "c:="], problems)
     assert [str(one) for one in problems] == [
         f"command line: {words!r}: an argument is written name:=value; write a:=1"
     ]
+    assert arguments._given.get("a") in (None, "1")  # not an empty value, which would be another mistake
 
 
 def test_words_that_are_no_argument() -> None:
