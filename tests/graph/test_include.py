@@ -83,6 +83,13 @@ nodes:
     assert any("goals: enable; limit none; when_full drop_old" in line for line in made.lines())
 
 
+@pytest.mark.parametrize("namespace", ["/", "$(var none '')"])
+def test_a_namespace_that_is_none(tmp_path: Path, namespace: str) -> None:
+    """It changes no name, and is none that fails to."""
+    made = plan(tmp_path, f"include: {{file: sub/base.yaml, namespace: {namespace}}}\n")
+    assert "/a" in [node.name for node in made.nodes]
+
+
 @pytest.mark.parametrize(
     ("over", "complaint"),
     [

@@ -182,11 +182,10 @@ class Expansion:
         )
         relative = self._relative  # unchanged afterwards if no name in the file depends on a namespace
         templates = self._file(top, path, inner, block.entries["args"].entries if model.args else {})
-        if "namespace" in block.entries and self._relative == relative and set(self.nodes) - before:
-            text = (
-                f"every name in {model.file} begins with a slash, so the namespace has no effect; leave the slashes out"
-            )
-            self._problems.add_unless_ros(block.entries["namespace"].place, f"{text} there")
+        is_in_vain = inner.namespace != scope.namespace and self._relative == relative and self.nodes.keys() - before
+        if is_in_vain and "namespace" in block.entries:
+            text = f"every name in {model.file} begins with a slash, so the namespace has no effect; leave it out there"
+            self._problems.add_unless_ros(block.entries["namespace"].place, text)
         changes = [o for o in (block.entries.get("override"), overridden) if o is not None]
         for change in changes:
             self._override(self._values.substituted(change, scope), set(self.nodes) - before, scope)
