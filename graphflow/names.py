@@ -89,6 +89,8 @@ def check_node_name(name: str) -> str:
     Raises:
         InvalidName: The name has other characters than letters, digits and underscores, or begins with a digit.
     """
+    if not isinstance(name, str):
+        raise InvalidName(f"{name!r} is not a node name: write a text, or nothing for the name of the class")
     if not _NODE.match(name):
         raise InvalidName(
             f"{name!r} is not a node name: use letters, digits and _, and do not begin with a digit"

@@ -51,6 +51,12 @@ def test_a_name_that_is_like_a_wrong_one(name: str, near: str) -> None:
         assert str(caught.value).endswith(end)
 
 
+def test_a_node_name_that_is_no_text() -> None:
+    """As in `super().__init__(...)`, copied with its dots."""
+    with pytest.raises(InvalidName, match=r"^Ellipsis is not a node name: write a text, or nothing for the name of"):
+        check_node_name(...)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize(("name", "namespace"), [("/a/b", "/a"), ("a/b", "a"), ("/b", "/")])
 def test_a_node_name_with_a_namespace_in_it(name: str, namespace: str) -> None:
     """Who writes the namespace into the name is told to give it apart."""

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
-from graphflow.errors import UnknownInterface
+from graphflow.errors import InterfaceError, UnknownInterface
 from graphflow.msgs import registry
 from graphflow.names import did_you_mean
 
@@ -70,6 +70,8 @@ class _InterfaceFinder:
                     text = f"{package}/{kind}/{name} has a field of an unknown type: {error}"
                     raise UnknownInterface(text) from None
                 raise AttributeError(str(error)) from None
+            except InterfaceError as error:
+                raise error.with_traceback(None) from None  # the file and line are in its text
             setattr(module, name, cls)
             return cls
 

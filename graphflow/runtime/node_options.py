@@ -12,6 +12,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field, is_dataclass
 from typing import Any, TypeVar
 
+from graphflow.analysis.user_code import short_place
 from graphflow.errors import DeclarationError
 from graphflow.interface import may_make
 from graphflow.machines.regrouping import Regrouping
@@ -86,7 +87,9 @@ def without_super(cls: type) -> str:
     """Return the sentence for a class whose `__init__` does not call its parent's."""
     if is_dataclass(cls):
         return f"leave out @dataclass above {cls.__name__}, whose __init__ it replaces; write word = Param(...)"
-    return f"{cls.__name__}.__init__ must call super().__init__(...)"
+    code = code_of(inspect.unwrap(cls.__init__))  # type: ignore[misc]
+    place = "" if code is None else f" ({short_place(code.co_filename, code.co_firstlineno)})"
+    return f"{cls.__name__}.__init__{place} must call super().__init__()"
 
 
 def why_not(cls: type) -> str:

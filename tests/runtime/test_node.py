@@ -117,7 +117,9 @@ async def test_a_node_that_did_not_call_its_parent(graph: Graph) -> None:
         def __init__(self) -> None:
             self.x = 1
 
-    with pytest.raises(DeclarationError, match=r"Forgetful\.__init__ must call super\(\)\.__init__"):
+    with pytest.raises(
+        DeclarationError, match=r"Forgetful\.__init__ \(test_node\.py:\d+\) must call super\(\)\.__init__"
+    ):
         await graph.start(Forgetful())
 
 

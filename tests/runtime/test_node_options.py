@@ -151,7 +151,8 @@ def test_what_nobody_gives() -> None:
         "parameter in the class: port = Param(...)"
     )
     assert why_not(Needy) == wanted
-    assert why_not(Forgot) == "Forgot.__init__ must call super().__init__(...)"
+    line = Forgot.__init__.__code__.co_firstlineno
+    assert why_not(Forgot) == f"Forgot.__init__ (test_node_options.py:{line}) must call super().__init__()"
     assert why_not(Data) == "leave out @dataclass above Data, whose __init__ it replaces; write word = Param(...)"
     assert why_not(Named) == why_not(Talker) == why_not(Node) == ""
     with pytest.raises(DeclarationError, match="needs port and baud"):

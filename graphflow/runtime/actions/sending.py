@@ -36,7 +36,8 @@ class Sending(Unentered[H]):
     """The context manager that `GoalClient.send` returns: a goal for the length of a block."""
 
     def __init__(self, client: _Client[H], goal: object, timeout: float | None, *, detach: bool) -> None:
-        super().__init__("`async with client.send(goal) as sent:`, or `sent = await client.send_goal(goal)`")
+        way = "`async with client.send(goal) as sent:`, or `sent = await client.send_goal(goal)`"
+        super().__init__(f"{way}, then `await sent.result()`")
         self._client, self._goal, self._timeout, self._detach = client, goal, timeout, detach
         self._sent: H | None = None
 

@@ -172,7 +172,7 @@ def test_a_forgotten_super_is_named(machine: Machine, tmp_path: Path) -> None:
     """The likeliest mistake in a constructor is explained in one sentence."""
     shutil.copy(PROGRAMS / "run" / "bare.py", tmp_path)
     text = machine.run("run", "bare:Bare", cwd=tmp_path, code=2)
-    assert text == "error: Bare.__init__ must call super().__init__(...)\n"
+    assert text == "error: Bare.__init__ (bare.py:11) must call super().__init__()\n"
 
 
 @slow

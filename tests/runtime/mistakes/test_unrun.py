@@ -35,6 +35,16 @@ def test_a_program_that_ends(tmp_path: Path, more: str, is_told: bool) -> None:
     assert done.stderr == (told if is_told else "")
 
 
+def test_a_parameter_in_the_body_of_a_class(tmp_path: Path) -> None:
+    """Python has shown the error; the remedy follows it."""
+    (tmp_path / "talk.py").write_text(
+        "from graphflow import Node, Param\n\nclass Talk(Node):\n    half = Param(1.0) / 2\n"
+    )
+    done = subprocess.run([sys.executable, "talk.py"], cwd=tmp_path, capture_output=True, text=True, timeout=LIMIT)
+    assert done.returncode == 1
+    assert "talk.py:4: a Param has its value on a node: compute with it" in done.stderr.splitlines()[-1]
+
+
 @slow
 @pytest.mark.parametrize("made", ["class Talk(Node): ...", "from talks import Talk"])
 def test_a_main_that_nothing_calls(tmp_path: Path, made: str) -> None:

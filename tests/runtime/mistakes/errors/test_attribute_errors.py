@@ -63,7 +63,9 @@ def test_a_node_that_was_not_made() -> None:
     with pytest.raises(AttributeError) as caught:
         Forgot()
     explain(caught.value)
-    assert str(caught.value) == "Forgot.__init__ must call super().__init__(...) first"
+    line = Forgot.__init__.__code__.co_firstlineno
+    text = f"Forgot.__init__ (test_attribute_errors.py:{line}) must call super().__init__() first"
+    assert str(caught.value) == text
 
 
 @pytest.mark.parametrize("message", [String(), Image()])
