@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from fnmatch import fnmatchcase
+from pathlib import PurePath
 from typing import Any, Literal
 
 from graphflow.errors import ParameterError, Place
@@ -108,10 +109,17 @@ class Parameter:
                 return f"write {plain(value)}"
             case float() if self.type == "int" and value.is_integer():
                 return f"write {int(value)}"
+            case float() if self.type == "int" and self._is_installed:
+                return f"write an integer, such as {math.floor(value)}"
             case float() if self.type == "int" and isinstance(self.default, int):
                 where = f" in {self.place}" if self.place.file else ""
                 return f"its default is {self.default}, an integer: for a double, write {self.default}.0{where}"
         return ""
+
+    @property
+    def _is_installed(self) -> bool:
+        """Whether the parameter is declared in an installed package, whose source is not for editing."""
+        return not {"site-packages", "dist-packages"}.isdisjoint(PurePath(self.place.file).parts)
 
     def _scalar(self, type_: ParamType, value: Any) -> Any:
         if type_ == "float" and isinstance(value, int) and not isinstance(value, bool):

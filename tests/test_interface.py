@@ -100,6 +100,13 @@ def test_values_of_another_type(type_: ParamType, default: Any, given: Any, text
     assert str(caught.value) == text
 
 
+def test_an_integer_of_an_installed_package() -> None:
+    """Its source is not for editing."""
+    place = Place("/venv/lib/python3.11/site-packages/sim/turtle.py", 60)
+    with pytest.raises(ParameterError, match=r"is of type integer, 2\.5 is not; write an integer, such as 2$"):
+        Parameter("background_r", "int", 69, place).fit(2.5)
+
+
 @pytest.mark.parametrize(
     ("limits", "inside", "outside", "text"),
     [

@@ -59,6 +59,8 @@ class Verb(click.Command):
             ctx.fail(f"{operator} is for a shell, and no shell reads this line: run it in a terminal")
         if left and path in OF_ONE:
             one = "interface show" if path.startswith("interface") and "/" in left[0] else OF_ONE[path]
+            if path.startswith("interface") and left[0][:1].isupper():  # a type, and no package
+                one, left[0] = "interface show", f"PACKAGE/msg/{left[0]}"
             ctx.fail(f"{path} takes no name; for one: graphflow {one} {left[0]}")
         if left and not takes_more and not ctx.resilient_parsing:
             ctx.fail(self.one_too_many(ctx, left))

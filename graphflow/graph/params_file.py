@@ -122,7 +122,7 @@ def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
                     Problem(src.key_place(here), f"{key!r}: did you mean {PARAMETERS!r}, with two _ in a row?")
                 )
             elif not isinstance(value, dict):
-                place = src.key_place(here)
+                place = src.place(here) if isinstance(value, str) else src.key_place(here)
                 if at and key == PARAMETERS:
                     problems.append(Problem(place, f"{PARAMETERS} is a mapping{_with_colon(value)}"))
                 else:
@@ -165,7 +165,7 @@ def _not_indented(src: Source, values: Mapping[str, object], at: source.Path) ->
 
 def _with_colon(value: object) -> str:
     """Return the correction of a text in place of a mapping of parameters."""
-    found = re.match(r"([\w.]+)\s*[=:]\s*(\S+)", value) if isinstance(value, str) else None
+    found = re.match(r"([\w.]+)(?:\s*[=:]\s*|\s+)(\S+)", value) if isinstance(value, str) else None
     return ", for example {rate: 2.0}" if found is None else f"; write {found[1]}: {found[2]}"
 
 

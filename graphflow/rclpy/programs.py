@@ -275,6 +275,9 @@ def _not_in_package(package: Package, module: str, workspace: Workspace, wanted:
     owners = [other for other in others if wanted in registry.names_in(other, kind)]
     if owners:
         return f"{wanted} is in {owners[0]}.{kind}: from {owners[0]}.{kind} import {wanted}"
+    own = next((one for one in KINDS if wanted in registry.names_in(name, one)), None)
+    if own is not None:
+        return f"{wanted} is in {name}.{own}: from {name}.{own} import {wanted}"
     near = nearest(name, others, cutoff=SLIP) or next((o for o in others if o.startswith(name)), None)
     if near is not None:
         return f"{name} has no .{kind} file; they are in {near}: from {near}.{kind} import ..."

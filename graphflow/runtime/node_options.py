@@ -83,18 +83,23 @@ def take(node: object) -> NodeOptions:
     return given[1]
 
 
+def _init(cls: type) -> Any:
+    """Return the function of a class's `__init__`, without its wrappers."""
+    return inspect.unwrap(cls.__init__)  # type: ignore[misc]
+
+
 def without_super(cls: type) -> str:
     """Return the sentence for a class whose `__init__` does not call its parent's."""
     if is_dataclass(cls):
         return f"leave out @dataclass above {cls.__name__}, whose __init__ it replaces; write word = Param(...)"
-    code = code_of(inspect.unwrap(cls.__init__))  # type: ignore[misc]
+    code = code_of(_init(cls))
     place = "" if code is None else f" ({short_place(code.co_filename, code.co_firstlineno)})"
     return f"{cls.__name__}.__init__{place} must call super().__init__()"
 
 
 def why_not(cls: type) -> str:
     """Return the reason why nodes of a class cannot be made, as a sentence; "" if they can."""
-    init = inspect.unwrap(cls.__init__)  # type: ignore[misc]
+    init = _init(cls)
     code = code_of(init)
     is_ours = init.__module__.startswith("graphflow.")
     if code is not None and not is_ours and not {"super", "__init__"} & {*code.co_names, *code.co_freevars}:

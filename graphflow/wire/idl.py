@@ -191,10 +191,11 @@ def _member(package: str, line: str) -> Field | Constant:
 
 def _check_order(line: str, type_text: str, rest: str) -> None:
     """Refuse brackets behind a name, as in C, and a constant without its sign."""
-    misplaced = re.match(r"(\w+)\s*(\[\s*(?:<=)?\d*\s*\])", rest)
-    if misplaced is not None and not type_text.endswith("]") and not type_text.startswith(tuple(STRINGS)):
-        brackets = misplaced[2].replace(" ", "")
-        raise InterfaceError(f"{line!r}: the brackets belong to the type: {type_text}{brackets} {misplaced[1]}")
+    space = "" if type_text.endswith("]") else r"\s*"  # after an array, a list with a space before it is the default
+    misplaced = re.match(rf"(\w+){space}(\[\s*(?:<=)?\d*\s*\])", rest)
+    if misplaced is not None and not type_text.startswith(tuple(STRINGS)):
+        of_one, brackets = type_text.partition("[")[0], misplaced[2].replace(" ", "")
+        raise InterfaceError(f"{line!r}: the brackets belong to the type: {of_one}{brackets} {misplaced[1]}")
     if (value := re.fullmatch(r"([A-Z][A-Z0-9_]*)\s+(-?[\d.]+);?\s*(?:#.*)?", rest)) is not None:
         raise InterfaceError(f"{line!r}: a constant has a =: {type_text} {value[1]}={value[2]}")
 

@@ -186,6 +186,12 @@ class Package:
             return None
         if entry.module.endswith(".py"):
             return f"{head} modules are named without .py; write {entry.module.removesuffix('.py')}:{entry.function}"
+        if (
+            top == self.name
+            and not file.parent.exists()
+            and (other := next(iter(self.python_folder.glob(f"*/{file.name}")), None))
+        ):
+            return f"{head} there is no folder {file.parent}; {other} is there: rename its folder to {file.parent.name}"
         near, above = self._nearest_module(entry.module), file.parent.parent / file.name
         meant = f"did you mean {near}:{entry.function}?" if near else "write that module, or name another one there"
         too_high = f"{above} is one folder too high: move it into {file.parent}" if above.is_file() else ""
@@ -222,12 +228,13 @@ class Package:
         return any(word.search(lenient_text(file)) for file in files)
 
     def _nearest_module(self, name: str) -> str | None:
-        """Return the module whose last part is that of a name, or else the one most similar to it."""
+        """Return the module whose last part is that of a name, or else the most similar one that no entry names."""
         files = (self.python_folder / self.name).rglob("*.py")
         known = [".".join(file.relative_to(self.python_folder).with_suffix("").parts) for file in sorted(files)]
         known = [module for module in known if not module.endswith("__init__")]
-        last = name.rpartition(".")[2]
-        return next((module for module in known if module.endswith(f".{last}")), None) or nearest(name, known)
+        last, named = name.rpartition(".")[2], {entry.module for entry in self.entry_points.values()}
+        same = next((module for module in known if module.endswith(f".{last}")), None)
+        return same or nearest(name, [module for module in known if module not in named])
 
     def file_of(self, entry: EntryPoint) -> Path:
         """Return the file of an executable's module, which need not exist."""
@@ -388,7 +395,8 @@ def cmake_text(package: Package) -> str:
 
 def _is_elsewhere(module: str, folder: Path) -> bool:
     """Return whether a module belongs to a package beside a folder, or is installed."""
-    return (folder.parent / module / "package.xml").is_file() or PathFinder.find_spec(module) is not None
+    beside = folder.parent / module
+    return (beside != folder and (beside / "package.xml").is_file()) or PathFinder.find_spec(module) is not None
 
 
 def _of_setup_cfg(file: Path) -> tuple[dict[str, EntryPoint], list[str]]:

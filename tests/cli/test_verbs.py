@@ -46,6 +46,9 @@ def test_a_name_behind_a_verb_that_tells_of_all(words: str, one: str) -> None:
     done = CliRunner().invoke(cli, [*words.split(), name], prog_name="graphflow")
     assert done.exit_code == 2
     assert f"{words} takes no name; for one: graphflow {one} {name}" in " ".join(done.output.split())
+    if words.startswith("interface"):
+        told = CliRunner().invoke(cli, [*words.split(), "Pose"], prog_name="graphflow").output
+        assert "for one: graphflow interface show PACKAGE/msg/Pose" in " ".join(told.split())
     described = CliRunner().invoke(cli, [*one.split(), "--help"], prog_name="graphflow")
     assert described.exit_code == 0
     assert f"Usage: graphflow {one} [" in described.output

@@ -99,7 +99,8 @@ def test_the_later_section_counts(tmp_path: Path) -> None:
         ("a:\nros__parameters:\n  x: 1", "p.yaml:2:1: 'ros__parameters' belongs below 'a': indent it and what follows"),
         ("a:\n  ros__parameters:\n  x: 1", "p.yaml:3:3: 'x' belongs below 'ros__parameters': indent it and what"),
         ("ros__parameters: {x: 1}", "p.yaml:1:1: ros__parameters belongs below a node: write NODE: above, and"),
-        ("a:\n  ros__parameters:\n    x=150", "p.yaml:2:3: ros__parameters is a mapping; write x: 150"),
+        ("a:\n  ros__parameters:\n    x=150", "p.yaml:3:5: ros__parameters is a mapping; write x: 150"),
+        ("a:\n  ros__parameters:\n    x 150", "p.yaml:3:5: ros__parameters is a mapping; write x: 150"),
         ("a: {ros__parameters: 3}", "p.yaml:1:5: ros__parameters is a mapping, for example {rate: 2.0}"),
         (
             "a: {ros__parameters: {'x.y: 2.0': }}",

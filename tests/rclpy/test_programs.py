@@ -505,3 +505,5 @@ def test_a_type_that_another_package_of_the_workspace_has(tmp_path: Path, monkey
     assert wanted == "SetLight"
     right = "SetLight is in lamp_kinds.srv: from lamp_kinds.srv import SetLight"
     assert _where_to_have("lamp.srv", find_workspace(tmp_path), wanted) == right
+    own = "SetLight is in lamp_kinds.srv: from lamp_kinds.srv import SetLight"
+    assert _where_to_have("lamp_kinds.msg", find_workspace(tmp_path), wanted) == own

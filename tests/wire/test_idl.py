@@ -163,6 +163,7 @@ BROKEN = [
     ("float64 x /* metres */", r"a comment begins with #$"),
     ("// where to go", r"'// where to go': a comment begins with #$"),
     ("float32 ranges[]", r"'float32 ranges\[\]': the brackets belong to the type: float32\[\] ranges$"),
+    ("int32[] list[3]", r": the brackets belong to the type: int32\[3\] list$"),
     ("float32 ranges [ 3 ]", r": the brackets belong to the type: float32\[3\] ranges$"),
     ("int32 MAX 5", r"'int32 MAX 5': a constant has a =: int32 MAX=5$"),
     ("int32 percent = 5;", r"; a constant: int32 PERCENT=5; a default of a field: int32 percent 5$"),

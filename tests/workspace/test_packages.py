@@ -218,6 +218,24 @@ def test_modules_that_are_elsewhere(entry: str, folders: str, told: str | None, 
     assert fault is None if told is None else fault is not None and fault.endswith(told.format(folder=folder))
 
 
+def test_a_folder_that_was_not_renamed(tmp_path: Path) -> None:
+    """It has the module under the package's former name."""
+    setup = "setup(entry_points={'console_scripts': ['go = b.go:main']})"
+    folder = package(tmp_path / "b", "b", setup_dot_py=setup, a__go_dot_py="def main(): ...")
+    fault = find_workspace(tmp_path).packages["b"].fault_of("go")
+    assert fault is not None
+    assert fault.endswith(f"there is no folder {folder}/b; {folder}/a/go.py is there: rename its folder to b")
+
+
+def test_a_module_that_another_entry_names(tmp_path: Path) -> None:
+    """It is that one's, and not meant by an entry whose module is missing."""
+    setup = "setup(entry_points={'console_scripts': ['arm = a.arm:main', 'art = a.art:main']})"
+    package(tmp_path / "a", "a", setup_dot_py=setup, a__arm_dot_py="def main(): ...")
+    fault = find_workspace(tmp_path).packages["a"].fault_of("art")
+    assert fault is not None
+    assert "did you mean" not in fault
+
+
 def test_variables_of_cmake(tmp_path: Path) -> None:
     """Those that plainly stand for something, and those that are always there."""
     cmake = """

@@ -127,10 +127,19 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
     return recording.run(choice, recording.RecordOptions(**options))
 
 
+class _SpeedFactor(click.FloatRange):
+    """A factor; -r is also that of a remap elsewhere."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if isinstance(value, str) and ":=" in value:
+            self.fail(f"{value!r} is a remap rule: write -m {value}", param, ctx)
+        return super().convert(value, param, ctx)
+
+
 @bag.command(cls=BagVerb, short_help="Play a bag into the running graph.")
 @click.argument("path", metavar="BAG", type=click.Path(path_type=Path))
 @topic_options
-@click.option("-r", "--rate", type=click.FloatRange(0.001, 1000), default=1.0, help="Speed factor. [1.0]")
+@click.option("-r", "--rate", type=_SpeedFactor(0.001, 1000), default=1.0, help="Speed factor. [1.0]")
 @click.option("-l", "--loop", is_flag=True, help="Play repeatedly.")
 @click.option("-p", "--start-paused", is_flag=True, help="Start paused; SPACE resumes.")
 @click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Seconds of the bag to skip.")

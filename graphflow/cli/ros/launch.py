@@ -109,10 +109,11 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
             graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
             way = f"; to start its graph: graphflow up {first}" if graph else "; graphflow launch FILE starts a file"
             raise UsageFault(f"the package {first!r} that comes with graphflow has no launch files{way}")
-        way = "; go to the folder that has it in src/, or to one within it, or start a file: graphflow launch FILE"
+        known = [*find_workspace(Path.cwd()).packages, *of_ros()]
+        way = did_you_mean(first, (), hidden=known) or _ELSEWHERE
         raise UsageFault(f"Package {first!r} not found{f': {why}' if why else way}")
     files = sorted(_files_below(folder))
-    found = [file for file in files if file.match(rest[0])]
+    found = [file for file in files if file.match(rest[0]) and file.suffix in _ENDINGS]
     if not found:
         known = _launch_files(files)
         begun = [name for name in known if name.startswith(f"{rest[0]}.")]
@@ -124,7 +125,8 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     return str(found[0]), rest[1:]
 
 
-_ENDINGS = (".py", ".xml", ".yaml", ".launch")
+_ELSEWHERE = "; go to the folder that has it in src/, or to one within it, or start a file: graphflow launch FILE"
+_ENDINGS = (".py", ".xml", ".yaml", ".yml", ".launch")
 """Suffixes of launch files."""
 
 

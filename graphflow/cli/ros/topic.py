@@ -378,6 +378,8 @@ def pub(name: str, type_name: str, values: tuple[str, ...], **options: Any) -> i
     from graphflow.introspect.messages.definitions import learn
 
     use_project()
+    if options["once"] and name.isdecimal():
+        raise UsageFault("--once takes no number; to publish several messages: --times N")
     check_order(name, type_name, "topic pub")
     full = expand(name, "/", "cli")
     try:

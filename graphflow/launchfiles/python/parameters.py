@@ -104,6 +104,8 @@ _TEXTS = {
     "SetLaunchConfiguration": "name value",
 }
 """Parameters that take texts and substitutions, perhaps in lists; launch refuses numbers there."""
+_OF_LISTS = ("PathJoinSubstitution", "PythonExpression")
+"""Substitutions of several parts, which are one list."""
 
 
 class Parameters(NamedTuple):
@@ -143,6 +145,9 @@ def wrong(kind: str, given: Sequence[object], names: Sequence[str]) -> Iterator[
         one = given[len(known.by_place)]
         hint = f"; write {known.by_name[0]}={one!r}" if known.by_name else ""
         hint = "; write package=..., executable=..." if "executable" in known.names else hint
+        if kind in _OF_LISTS:
+            yield f"{kind} takes a list: write [ ] around {', '.join(map(repr, given))}"
+            return
         yield f"{kind} takes {len(known.by_place) or 'nothing'} without a name, and not {one!r}{hint}"
     for name in sorted({*names} - {*known.names}):
         now = name.removeprefix("node_")  # the spelling of ROS 2's first distributions

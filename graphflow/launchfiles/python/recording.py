@@ -12,7 +12,9 @@ from typing import Protocol
 from graphflow.folders import newest_logs
 from graphflow.launchfiles.recorded import Finding
 from graphflow.markup.substitutions import Outside, Run, SubstitutionError, Substitutions
+from graphflow.names import did_you_mean
 from graphflow.workspace.executables import package_prefix, package_share
+from graphflow.workspace.packages import find_workspace
 from graphflow.workspace.project import project_root
 
 
@@ -20,7 +22,8 @@ class PackageNotFoundError(KeyError):
     """The error of ament_index_python for a package that is not found."""
 
     def __str__(self) -> str:
-        return f"package {self.args[0]!r} not found; it is neither in the workspace nor installed"
+        near = self.args[1] if len(self.args) > 1 else ""
+        return f"package {self.args[0]!r} not found{near or '; it is neither in the workspace nor installed'}"
 
 
 class _Call(Protocol):
@@ -113,7 +116,8 @@ class Recording:
         find = package_prefix if what == "prefix" else package_share
         found = find(package, project_root(Path(self.file)), os.environ)
         if found is None:
-            raise PackageNotFoundError(package)
+            near = did_you_mean(package, (), hidden=find_workspace(Path(self.file)).packages)
+            raise PackageNotFoundError(package, near)
         return str(found)
 
 

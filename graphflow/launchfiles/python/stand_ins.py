@@ -212,7 +212,7 @@ def _substitution(call: RecordedCall) -> str:
             return f"$(exec-in-pkg {_word(call.get('executable', 0))} {_word(call.get('package', 1))})"
         case "PathJoinSubstitution":
             # As in launch: a part that begins with a slash drops those before it.
-            return os.path.join("", *map(text, first))
+            return os.path.join("", *map(text, first if isinstance(first, (list, tuple)) else call.args))
         case "PythonExpression":
             expression = text(first)
             return f"$(eval {as_word(expression) if expression[:1] in QUOTES else expression})"

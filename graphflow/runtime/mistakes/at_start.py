@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 
+from graphflow.analysis.mistakes.calls.hidden_logs import HIDDEN
 from graphflow.analysis.user_code import is_users_module
 from graphflow.runtime.mistakes.source.module_variables import exchanged
 from graphflow.runtime.part import Host
@@ -49,7 +50,8 @@ def warn_at_start(
     if not is_regrouped:
         found = (*found, *slips_in_groups(cls))
     for slip in found:
-        log.warning("%s", slip)
+        if not (slip.endswith(HIDDEN) and log.isEnabledFor(logging.DEBUG)):
+            log.warning("%s", slip)
     if others:
         from graphflow.runtime.mistakes.source.shared_attributes import shared_attributes  # most are alone
 

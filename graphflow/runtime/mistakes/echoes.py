@@ -25,20 +25,20 @@ class Echo:
 
     Args:
         received: Returns the number of messages received so far.
-        warn: Called once, with the messages per second.
+        warn: Called with the messages per second, once, and again at the end, since what they cause hides the first.
     """
 
     def __init__(self, clock: Clock, received: Callable[[], int], warn: Callable[[int], None]) -> None:
         self._clock, self._received, self._warn = clock, received, warn
         self._alarm: Alarm | None = None
-        self._last = 0
+        self._last = self._rate = 0
         self._has_warned = self._was_fast = False
 
     def follow(self, *, has_own: bool) -> None:
         """Start the check while the node has a publisher of the topic, or stop it."""
         if not has_own:
             self.stop()
-        elif self._alarm is None and not self._has_warned:
+        elif self._alarm is None:
             self._last, self._was_fast = self._received(), False
             self._arm()
 
@@ -47,19 +47,21 @@ class Echo:
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
+            if self._has_warned and self._was_fast:
+                self._warn(self._rate)
 
     def _arm(self) -> None:
         self._alarm = self._clock.call_at(self._clock.monotonic_ns() + NANOSECONDS, self._check)
 
     def _check(self) -> None:
         self._alarm, received = None, self._received()
-        rate, self._last = received - self._last, received
-        if rate >= LOOP and self._was_fast:
+        self._rate, self._last = received - self._last, received
+        is_fast = self._rate >= LOOP
+        if is_fast and self._was_fast and not self._has_warned:
             self._has_warned = True
-            self._warn(rate)
-        else:
-            self._was_fast = rate >= LOOP
-            self._arm()
+            self._warn(self._rate)
+        self._was_fast = is_fast
+        self._arm()
 
 
 def echo_of(host: Host, topic: str, received: Callable[[], int]) -> Echo:
@@ -68,7 +70,7 @@ def echo_of(host: Host, topic: str, received: Callable[[], int]) -> Echo:
     def warn(rate: int) -> None:
         host.log.warning(
             "this node hears what it publishes itself on %s, %d messages a second: if the handler publishes there, "
-            "that never ends; publish to another topic, or remap one of the two",
+            "that never ends; give one of the two another topic",
             topic,
             rate,
         )

@@ -87,6 +87,8 @@ def record(path: str, values: Mapping[str, Any] | None) -> dict[str, Any]:
         no_path = re.search(r"os\.PathLike object, not '?(\w+)", str(error)) if isinstance(error, TypeError) else None
         if no_path is not None and BASES.get(no_path[1]) == "Substitution":
             hint = f"; write PathJoinSubstitution([..., {no_path[1]}(...)])"
+        if isinstance(error, TypeError) and str(error).startswith("Node.__init__() got an unexpected keyword"):
+            hint = "; this Node is rclpy's: write from launch_ros.actions import Node"
         hint = hint or _before_launch(error)
         RECORDING.problems.append({"line": line, "message": f"{type(error).__name__}: {error}{hint}"})
     _explain()

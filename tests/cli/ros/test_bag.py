@@ -68,6 +68,7 @@ def test_bags_of_bags(machine: Machine, folder: Path) -> None:
         ("info nothing", 1, "error: nothing: there is no such file or folder"),
         ("play nothing", 1, "error: nothing: there is no such file or folder"),
         ("play bag --rate 0", 2, "--rate"),
+        ("play bag -r /a:=/b", 2, "'/a:=/b' is a remap rule: write -m /a:=/b"),
         ("play bag -m /a:/b", 2, "'/a:/b' is not a remap rule; write OLD:=NEW"),
         ("play bag -s 2", 2, "-s is the bag's format, mcap or sqlite3, not '2'; -r is the speed"),
         ("record -a /chatter", 2, "-a records all topics: leave it out, or the names /chatter"),

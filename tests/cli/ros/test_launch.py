@@ -105,6 +105,10 @@ def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
         assert "/talker" in machine.look("launch", "-p", *words, "rate:=3", cwd=tmp_path)
     told = machine.look("launch", "my_robot", "talk.launch.yml", cwd=tmp_path, code=2)
     assert "my_robot has no file 'talk.launch.yml'; did you mean 'talk.launch.yaml'?" in told
+    (folder / "resource").mkdir()
+    (folder / "resource" / "my_robot").touch()  # the mark of a package, which is no launch file
+    told = machine.look("launch", "my_robot", "my_robot", cwd=tmp_path, code=2)
+    assert "my_robot has no file 'my_robot'" in told
     (folder / "launch" / "all.launch.py").write_text(PYTHON)
     (folder / "launch" / "round").symlink_to(folder)
     told = machine.look("launch", "-p", "my_robot", "all.launch.py", "loud:=2", cwd=tmp_path)

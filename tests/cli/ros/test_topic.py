@@ -206,6 +206,12 @@ def test_pub_once(standing: Machine) -> None:
     standing.until(lambda: "on the record" in standing.look("logs", "office"), "it is heard")
 
 
+def test_pub_once_and_a_number(machine: Machine) -> None:
+    """The option takes none."""
+    told = machine.look("topic", "pub", "--once", "10", "/office/minutes", STRING, "data: a", code=2)
+    assert "--once takes no number; to publish several messages: --times N" in told
+
+
 def test_without_a_graph(machine: Machine) -> None:
     """Without a graph, inspecting verbs exit with 3."""
     assert "error: nothing is running: nothing answers at tcp/" in machine.look("topic", "list", code=3)

@@ -26,6 +26,7 @@ from graphflow.launchfiles.python.parameters import PARAMETERS, not_texts, wrong
         ("DeclareLaunchArgument", ["x"], ["default"], "has no argument 'default'; did you mean 'default_value'?"),
         ("DeclareLaunchArgument", ["x", "1"], [], "takes 1 without a name, and not '1'; write default_value='1'"),
         ("LogInfo", ["hello"], [], "LogInfo takes nothing without a name, and not 'hello'; write msg='hello'"),
+        ("PathJoinSubstitution", ["a", "b"], [], "PathJoinSubstitution takes a list: write [ ] around 'a', 'b'"),
         ("AndSubstitution", ["a", "b", "c"], [], "AndSubstitution takes 2 without a name, and not 'c'"),
     ],
 )

@@ -59,6 +59,21 @@ async def test_the_watch_ends_with_the_publisher(graph: Graph) -> None:
     assert counts.told == [LOOP]
 
 
+async def test_a_loop_is_told_again_at_its_end(graph: Graph) -> None:
+    """What it prints has hidden the warning; a loop that has ended before is not told again."""
+    counts = Counts(graph.clock)
+    counts.echo.follow(has_own=True)
+    for _ in range(4):
+        await counts.second(LOOP)
+    counts.echo.stop()
+    counts.echo.stop()
+    assert counts.told == [LOOP, LOOP]
+    counts.echo.follow(has_own=True)
+    await counts.second(3)
+    counts.echo.stop()
+    assert counts.told == [LOOP, LOOP]
+
+
 async def test_what_came_before_the_watch(graph: Graph) -> None:
     """Does not count."""
     counts = Counts(graph.clock)
@@ -99,7 +114,7 @@ async def test_a_node_that_feeds_itself(graph: Graph, caplog: Caplog, others: in
     told = [r.getMessage() for r in caplog.records if "publishes itself" in r.getMessage()]
     assert told == [
         f"this node hears what it publishes itself on /number, {LOOP} messages a second: if the handler publishes "
-        "there, that never ends; publish to another topic, or remap one of the two"
+        "there, that never ends; give one of the two another topic"
     ]
 
 

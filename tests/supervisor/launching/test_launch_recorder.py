@@ -562,6 +562,24 @@ def test_values_before_the_launch(tmp_path: Path, code: str) -> None:
 
 
 @slow
+def test_rclpys_node_in_a_launch_file(tmp_path: Path) -> None:
+    """The problem names the import of launch's."""
+    body = "from rclpy.node import Node as N\nreturn LaunchDescription([N(package='a', executable='b')])"
+    [problem], _ = described(tmp_path, body)
+    assert problem.endswith("'package'; this Node is rclpy's: write from launch_ros.actions import Node")
+
+
+@slow
+def test_a_package_that_is_misspelt(tmp_path: Path) -> None:
+    """The problem names the nearest of the workspace."""
+    (tmp_path / "src" / "turret").mkdir(parents=True)
+    (tmp_path / "src" / "turret" / "package.xml").write_text("<package><name>turret</name></package>")
+    body = "from ament_index_python.packages import get_package_share_directory as share\nshare('turet')"
+    [problem], _ = described(tmp_path, body, x="1")
+    assert problem.endswith("package 'turet' not found; did you mean 'turret'?")
+
+
+@slow
 def test_conditions_that_are_compared(tmp_path: Path) -> None:
     """The problem says what to write, and nothing is said twice."""
     problems, remarks = described(

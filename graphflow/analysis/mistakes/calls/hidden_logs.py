@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from graphflow.analysis.syntax import last_name, nodes_in
 
+HIDDEN = "debug() prints nothing at the usual level: write info(), or give --ros-args --log-level debug"
 _LOGGERS = ("log", "logger", "get_logger")
 _SHOWN = ("info", "warn", "warning", "error", "fatal", "critical", "exception", "log")
 _RUNS = ("spin", "spin_once", "run", "running")
@@ -26,10 +27,7 @@ def hidden_logs(module: ast.Module) -> Iterator[tuple[int, str]]:
         return
     for call in logged[:1]:
         if last_name(call.func) == "debug":
-            yield (
-                call.lineno,
-                "debug() prints nothing at the usual level: write info(), or give --ros-args --log-level debug",
-            )
+            yield call.lineno, HIDDEN
 
 
 def _is_logger(value: ast.expr) -> bool:

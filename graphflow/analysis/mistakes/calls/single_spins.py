@@ -12,7 +12,7 @@ _ENDS = ("destroy_node", "shutdown", "try_shutdown")
 
 
 def single_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
-    """Find the only spin of a file if it is a `spin_once` outside of loops; it comes with a sentence.
+    """Find the last spin of a file if all are `spin_once` outside of loops; it comes with a sentence.
 
     A file without timers is left alone if anything but the end comes after it: the program may want one message. So
     are functions other than `main`.
@@ -20,12 +20,12 @@ def single_spins(module: ast.Module) -> Iterator[tuple[int, str]]:
     calls = [(node, parents) for node, parents in walk(module) if isinstance(node, ast.Call)]
     names = {last_name(call.func) for call, _ in calls}
     spins = [(call, parents) for call, parents in calls if last_name(call.func) in _SPINS]
-    if len(spins) != 1:
+    if not spins or {last_name(spin.func) for spin, _ in spins} != {"spin_once"}:
         return
-    [(call, parents)] = spins
+    call, parents = spins[-1]
     functions = [parent for parent in parents if isinstance(parent, FunctionNode)]
     is_helper = [function.name for function in functions] not in ([], ["main"])
-    if last_name(call.func) != "spin_once" or is_helper or any(isinstance(parent, LOOPS) for parent in parents):
+    if is_helper or any(isinstance(parent, LOOPS) for _, around in spins for parent in around):
         return
     what = ""
     if "create_timer" in names:

@@ -11,11 +11,13 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from graphflow.analysis.mistakes.calls.hidden_logs import HIDDEN
 from graphflow.analysis.mistakes.rclpy_source import slips
 from graphflow.analysis.syntax import syntax_of
 from graphflow.analysis.user_code import is_users, parts_of, short_place
 from rclpy.impl.entities import entities_of
 from rclpy.impl.failing import failure
+from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.impl.nodes import internals_of, nodes_of
 
 if TYPE_CHECKING:
@@ -61,6 +63,8 @@ class Uncalled:
             with suppress(OSError, SyntaxError, ValueError):  # its source is not available
                 module = syntax_of(file).module
                 for line, text in slips(module):
+                    if text == HIDDEN and node.get_logger().is_enabled_for(LoggingSeverity.DEBUG):
+                        continue
                     if after is not None and not any(f"'{name}'" in text for name in _functions_in(after)):
                         continue
                     logger.warning("%s: %s", short_place(file, line), text)
