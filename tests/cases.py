@@ -19,7 +19,7 @@ T = TypeVar("T")
 VARIABLE = "GRAPHFLOW_CASES"
 """How the option reaches test modules, which need it while they are imported."""
 _GIVEN = os.environ.get(VARIABLE, "few")
-PARTS = 4
+PARTS = 6
 """Parts of the slow tests, of which each commit has one."""
 TURN = int(os.environ.get("GRAPHFLOW_TURN", "0")) % PARTS
 """The part of the slow tests that is run with `--cases turn`."""
