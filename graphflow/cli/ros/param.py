@@ -202,7 +202,9 @@ def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> i
     if result.successful:
         output.data("Set parameter successful" + (f": {result.reason}" if result.reason else ""))
         return exits.OK
-    output.talk(f"Setting parameter failed: {result.reason}")
+    is_slip = result.reason.startswith("Wrong parameter type") and isinstance(read, float)  # ROS's words, without a way
+    way = "; write an integer, or have the node declare it with a double, such as 1.0" if is_slip else ""
+    output.talk(f"Setting parameter failed: {result.reason}{way}")
     return exits.FAILED
 
 

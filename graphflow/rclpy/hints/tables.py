@@ -49,6 +49,9 @@ TEXTS: dict[str, str] = {
         "it was already destroyed, by itself or with its node: use it earlier, and call destroy_node() last"
     ),
     r"Context\.init\(\) must only be called once": "call rclpy.init() once, before the first node is created",
+    r"(\w+)_(Goal|Result|Feedback|Request|Response)\.__init__\(\) takes 1 positional argument": (
+        "fields are given by name, as in {}.{}(name=...)"
+    ),
     r"generator already executing": (
         "rclpy.spin has one executor for all threads: add the nodes to one, executor = MultiThreadedExecutor(), "
         "executor.add_node(node) for each, and executor.spin()"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shlex
+import signal
 from pathlib import Path
 from typing import Any
 
@@ -247,3 +248,26 @@ def test_a_mapping(standing: Machine) -> None:
     """A mapping is not a value: the error has the name of its first parameter."""
     told = standing.look("param", "set", "/talker", "rate", "{x: 2}", code=1)
     assert "{'x': 2} cannot be a parameter: it is a mapping, whose keys are parameters of their own, as in " in told
+
+
+RCLPY = """\
+import rclpy
+from rclpy.node import Node
+
+rclpy.init()
+node = Node("clocked")
+node.declare_parameter("period", 1)
+rclpy.spin(node)
+"""
+
+
+@slow
+def test_a_double_for_an_integer_of_rclpy(machine: Machine, tmp_path: Path) -> None:
+    """ROS's words are followed by the two ways out."""
+    (tmp_path / "clocked.py").write_text(RCLPY)
+    program = machine.start("run", "clocked.py", cwd=tmp_path)
+    machine.until(lambda: "/clocked" in machine.look("node", "list", code=None), "it runs")
+    told = machine.look("param", "set", "/clocked", "period", "0.5", code=1)
+    assert "Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'; write an integer, or have the node" in told
+    assert "write an integer" not in machine.look("param", "set", "/clocked", "period", "true", code=1)
+    assert program.end(signal.SIGINT) in (0, 130, -2)

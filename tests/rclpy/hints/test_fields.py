@@ -99,6 +99,7 @@ ONE = "dimensions, and the field one: write "
             "AddTwoInts_Request has a, b; sum is in AddTwoInts.Response: use that, or correct the order of the "
             "definition, request --- response",
         ),
+        ("Fibonacci.Feedback([1])", "fields are given by name, as in Fibonacci.Feedback(name=...)"),
         ("AddTwoInts.Request().some", "AddTwoInts_Request has a, b"),
         ("Int32(data=1.5)", "data is an int: write int(...)"),
         ("Twist(linear=1.5)", "linear is a Vector3: set its fields, as in linear.x = ..."),

@@ -57,7 +57,8 @@ def remark(name: str, value: Any, source: str, kind: Parameter.Type) -> str:
         way = as_argument(value, source.partition(":")[0])
         return f"{name} is set {where} to the text {value!r}: for the argument of that name write {way}"
     if not written and kind in _NEEDED:
-        return f"{name} is set {where}: it needs {_NEEDED[kind]}"
+        of_double = f", or, for a double, declare_parameter({name!r}, 1.0)" if isinstance(value, float) else ""
+        return f"{name} is set {where}: it needs {_NEEDED[kind]}{of_double}"
     other = f", or declare it as declare_parameter({name!r}, {value})" if isinstance(value, bool) else ""
     return f"{name} is set {where}" + (f": write {way}{other}" if written and way else "")
 

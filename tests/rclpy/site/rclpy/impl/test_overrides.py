@@ -51,7 +51,8 @@ def test_a_value_that_is_no_number() -> None:
     for kind, needed in of.items():
         assert remark("gain", "hot", "command line", kind) == f"gain is set on the command line: it needs {needed}"
         assert remark("gain", "hot", "/home/lamp.yaml:3", kind) == f"gain is set in lamp.yaml:3: it needs {needed}"
-    assert remark("gain", 5.5, "command line", Kind.INTEGER).endswith("it needs an integer, such as 2")
+    told = remark("gain", 5.5, "command line", Kind.INTEGER)
+    assert told.endswith("it needs an integer, such as 2, or, for a double, declare_parameter('gain', 1.0)")
 
 
 @pytest.mark.parametrize(

@@ -48,7 +48,8 @@ def without_effect(cls: type, name: str) -> str:
     if first is None:
         return ""
     if is_period:
-        way = f"make a new one in a callback of add_on_set_parameters_callback, or start again with -p {name}:=VALUE"
+        way = "make a new one in a callback of add_on_set_parameters_callback, or start again with"
+        way += f" --ros-args -p {name}:=VALUE"
         return f"{first}: {name!r} is set without effect, since a timer keeps its period; {way}"
     read = f"self.get_parameter({name!r}).value"
     return (

@@ -61,7 +61,7 @@ class Unfilled:
             return
         frame = users_frame(sys._getframe(1))
         name = _name(buffer, frame)
-        self.remark = f"nothing fills this Buffer; write self.listener = TransformListener({name}, self)"
+        self.remark = f"nothing fills this Buffer; write in __init__ self.listener = TransformListener({name}, self)"
         place = "" if frame is None else f"{short_place(frame.f_code.co_filename, frame.f_lineno)}: "
         logger.warning("%s%s", place, self.remark)
 

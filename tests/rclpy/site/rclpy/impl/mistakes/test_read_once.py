@@ -84,7 +84,7 @@ def test_a_period_that_is_read_once(lines: str, written: Written) -> None:
     text = without_effect(written(HEAD + lines + "    def tick(self):\n        pass\n").Car, "speed")
     assert text.endswith(
         ".py:8: 'speed' is set without effect, since a timer keeps its period; make a new one in a callback of "
-        "add_on_set_parameters_callback, or start again with -p speed:=VALUE"
+        "add_on_set_parameters_callback, or start again with --ros-args -p speed:=VALUE"
     )
 
 

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from rclpy.time import Time
 from tests.rclpy.conftest import Spinner
 
-REMARK = "nothing fills this Buffer; write self.listener = TransformListener({}, self)"
+REMARK = "nothing fills this Buffer; write in __init__ self.listener = TransformListener({}, self)"
 
 
 class Asks:
