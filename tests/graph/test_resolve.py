@@ -171,8 +171,8 @@ def test_arguments(given: Sequence[str], values: dict[str, Any]) -> None:
         (["mode:=2", "gain=1"], "command line: 'gain=1': an argument is written name:=value; write gain:=1"),
         (
             ["mode:=2", "b.yaml"],
-            "command line: 'b.yaml': an argument is written name:=value; to start b.yaml, too, have a third file with "
-            "include: [FILE, FILE]",
+            "command line: 'b.yaml': an argument is written name:=value; give one graph file at a time, or a third "
+            "one with include: [FILE, FILE]",
         ),
         (["mode:=2", ":=1"], "command line: ':=1': an argument is written name:=value"),
         (["mode:=slow"], "4:3: argument 'mode' is 'slow', but must be one of fast, 2"),

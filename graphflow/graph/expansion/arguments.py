@@ -36,7 +36,7 @@ class Arguments:
             if slip is not None and slip[1] in self._given:  # as in `x:= 1`, which alone gives no value
                 self._given[slip[1]] = slip[2]
             if text.endswith((".yaml", ".yml")):
-                meant = f"; to start {text}, too, have a third file with include: [FILE, FILE]"
+                meant = "; give one graph file at a time, or a third one with include: [FILE, FILE]"
             problems.add(COMMAND_LINE, f"{text!r}: an argument is written name:=value{meant}")
         self.values: dict[str, Data] = {}
         """Values of the arguments that the command line may set, by name."""

@@ -59,7 +59,7 @@ def better_text(error: AttributeError) -> str:
         return text
     running = {part.tb_frame.f_code for part in parts_of(error.__traceback__)}
     own = translation(name) or _hint_with_name(thing, name, error)
-    hint = own or _setter(thing, name, running) or _near(thing, name)
+    hint = own or _setter(thing, name, running) or _near(thing, name) or _first_value(name, error)
     return f"{error}; {hint}" if hint else ""
 
 
@@ -92,6 +92,14 @@ def _near(thing: object, name: str) -> str:
     """Return the attribute that a misspelt one seems to mean; "" if there is none."""
     near = nearest(name, [word for word in dir(thing) if not word.startswith("_")], cutoff=0.75)
     return f"did you mean {near!r}?" if near is not None else ""
+
+
+def _first_value(name: str, error: AttributeError) -> str:
+    """Return a hint if the line counts with an attribute that nothing sets; "" otherwise."""
+    parts = list(parts_of(error.__traceback__))
+    line = linecache.getline(parts[-1].tb_frame.f_code.co_filename, parts[-1].tb_lineno) if parts else ""
+    counts = re.search(rf"self\.{name}\s*[-+*/]=", line) is not None
+    return f"give it a first value in the class: {name} = 0" if counts else ""
 
 
 def _setter(thing: object, name: str, running: Collection[CodeType]) -> str:

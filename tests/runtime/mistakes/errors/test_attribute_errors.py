@@ -137,6 +137,23 @@ def test_a_misspelt_attribute() -> None:
         assert str(caught.value).endswith(text)
 
 
+class Counter(Node):
+    """Counts with an attribute that nothing sets."""
+
+    laps: int
+
+    def count(self) -> None:
+        self.laps += 1
+
+
+def test_an_attribute_that_counts_from_nothing() -> None:
+    """It needs a first value, in the class."""
+    with pytest.raises(AttributeError) as caught:
+        Counter().count()
+    explain(caught.value)
+    assert str(caught.value).endswith("has no attribute 'laps'; give it a first value in the class: laps = 0")
+
+
 def test_fields_that_are_set() -> None:
     """The line must name the message; other objects get no hint."""
     response: Any = AddTwoInts.Response()
