@@ -95,22 +95,13 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
         if words[0].startswith("-") or not package.executables:
             return None
         is_explained = words[0].removesuffix(".py") in package.why_no_executable
-        near = "" if is_explained else launching(words[0], [package]) or _unnamed(package, words[0])
+        near = "" if is_explained else launching(words[0], [package]) or package.unnamed(words[0])
         near = near or ("" if is_explained else did_you_mean(words[0], package.executables))
         way = f"{package.why_no_executable}{workspace.way_to_double(what)}"
         raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}{way}")
     file, entry = found
     is_ours = entry is not None and is_graphflows(file)
     return None if is_ours and not is_folder else Program(file, entry, workspace, list(words[1:]))
-
-
-def _unnamed(package: Package, name: str) -> str:
-    """Report a module of that name whose entry in setup.py is missing; empty if there is none."""
-    module = package.folder / package.name / f"{name.removesuffix('.py')}.py"
-    if not module.is_file() or not (package.folder / "setup.py").is_file():
-        return ""
-    line = f"{module.stem} = {package.name}.{module.stem}:main"
-    return f"; {module.name} is there: add '{line}' to the console_scripts of {package.folder / 'setup.py'}"
 
 
 def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] | None:

@@ -197,6 +197,14 @@ class Package:
         too_high = f"{above} is one folder too high: move it into {file.parent}" if above.is_file() else ""
         return f"{head} there is no {file}; {too_high or meant}"
 
+    def unnamed(self, executable: str) -> str:
+        """Return the entry that `setup.py` lacks for a module of that name, to append; empty if there is none."""
+        module = self.folder / self.name / f"{executable.removesuffix('.py')}.py"
+        if not module.is_file() or not (self.folder / "setup.py").is_file():
+            return ""
+        line = f"{module.stem} = {self.name}.{module.stem}:main"
+        return f"; {module.name} is there: add '{line}' to the console_scripts of {self.folder / 'setup.py'}"
+
     def copy_fault(self, executable: str) -> str | None:
         """Return the fault of an entry that is a copy of another but for its name, which is that of another module."""
         entry, line = self.setup.entry_points.get(executable), self.setup.lines.get(executable)

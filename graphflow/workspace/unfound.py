@@ -146,7 +146,8 @@ def _lack(found: Folder) -> str | None:
     if "package.xml" in found.files:
         return _unnamed(found.path / "package.xml", f"{shown}/package.xml", name)
     if "pyproject.toml" in found.files and any((found.path / folder).is_dir() for folder in ("nodes", "graphs")):
-        made = f"a package is made by graphflow pkg create --build-type ament_python {name}"
+        command = f"graphflow pkg create --build-type ament_python {name}"
+        made = f"a package is made, once {shown} has another name, by {command}"
         return f"{shown} is a project of graphflow's, not a package of ROS 2's; to use it: cd {shown}; {made}"
     built = next((file for file in _BUILT if file in found.files), None)
     return None if built is None else f"{shown} has {built} but no package.xml; {_NEEDED.format(name=name)}"

@@ -474,3 +474,14 @@ def test_source_trees_of_what_graphflow_has(tmp_path: Path, name: str, module: s
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "__init__.py").touch()
     assert find_workspace(tmp_path).replaced == {folder.name: folder}
+
+
+def test_a_module_that_no_entry_names(tmp_path: Path) -> None:
+    """The entry is written out; other names have none."""
+    setup = "setup(entry_points={'console_scripts': ['arm = a.arm:main']})"
+    folder = package(tmp_path / "a", "a", setup_dot_py=setup, a__arm_dot_py="def main(): ...", a__leg_dot_py="")
+    found = find_workspace(tmp_path).packages["a"]
+    assert found.unnamed("leg") == (
+        f"; leg.py is there: add 'leg = a.leg:main' to the console_scripts of {folder}/setup.py"
+    )
+    assert found.unnamed("head") == ""

@@ -88,10 +88,9 @@ def _project(name: str, destination: Path, unused: Mapping[str, object]) -> None
     _print_new(name, destination)
     output.data(f"creating folder {_joined(destination, name)}")
     output.lines(f"creating {_joined(destination, file.relative_to(destination))}" for file in write_project(folder))
-    if unused:
-        options = ", ".join(f"--{option.replace('_', '-')}" for option in unused)
-        way = f"for a ROS 2 package, remove {name} and add --build-type ament_python"
-        output.talk(f"note: {options}: not used by a graphflow project; {way}")
+    options = ", ".join(f"--{option.replace('_', '-')}" for option in unused)
+    said = f"{options}: not used by a graphflow project" if unused else "this is a graphflow project"
+    output.talk(f"note: {said}; for a ROS 2 package, remove {name} and add --build-type ament_python")
     output.talk(f"next:\n  cd {folder}\n  graphflow up graphs/{folder.name}.yaml")
 
 

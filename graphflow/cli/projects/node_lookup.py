@@ -31,6 +31,7 @@ from graphflow.workspace.installed import installed, package_of, packages_with
 from graphflow.workspace.node_classes import node_classes_in
 from graphflow.workspace.packages import Workspace, find_workspace
 from graphflow.workspace.project import demos_root, module_of, project_root, shown
+from graphflow.workspace.source_kinds import uses_ros
 from graphflow.workspace.unfound import owners, why_no_package
 
 FOLDERS = 1000
@@ -171,6 +172,8 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
         why = f"; {', '.join(compiled)} {verb} C++, which only colcon builds" if compiled else ""
         why += packages[what].why_no_executable
         return f"the package {what!r} has no executable that graphflow can run{why}"
+    if words and (program := _program_of(what, words[0], root)):
+        return f"{what} is a project of graphflow's; to run its program for rclpy: graphflow run {program}"
     if what == root.name and (own := project_nodes(root)):
         meant = (nearest(words[0], own) or _class_in(root, words[0].removesuffix(".py"))) if words else None
         return f"{what!r} is the project that you are in: graphflow run {meant or min(own)}"
@@ -240,6 +243,15 @@ def _instead_of(file: Path) -> str:
     if file.parent.name in ("", "nodes") and (demos_root() / "nodes" / file.name).is_file():
         return f"; {file.name} comes with graphflow: graphflow run {file.stem}"
     return did_you_mean(str(file), [str(found) for found in above.glob("*.py")])
+
+
+def _program_of(project: str, name: str, root: Path) -> Path | None:
+    """Return the program for rclpy of a project here, or around the working directory; None if there is none."""
+    folder = root if project == root.name else Path.cwd() / project
+    file = folder / project / f"{name.removesuffix('.py')}.py"
+    if not (folder / "pyproject.toml").is_file() or not file.is_file() or not uses_ros(file):
+        return None
+    return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
 
 
 def _class_in(root: Path, word: str) -> str:

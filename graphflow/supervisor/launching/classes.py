@@ -67,7 +67,7 @@ def import_class(class_path: str) -> type[Node]:
         raise NoClass(f"module {module_name} has no class {class_name!r}{near}")
     if not (isinstance(found, type) and issubclass(found, Node)):
         is_rclpys = isinstance(found, type) and any(base.__module__.startswith("rclpy.") for base in found.__mro__)
-        way = "; a program for rclpy is a node with pkg: PACKAGE and exec: NAME" if is_rclpys else ""
+        way = f"; it is one of rclpy, run by graphflow run {module.__file__}" if is_rclpys else ""
         raise GraphflowError(f"{class_path} is not a node class: it does not derive from graphflow.Node{way}")
     return found
 

@@ -126,6 +126,13 @@ def test_without_a_build_type(machine: Machine, tmp_path: Path) -> None:
     assert "creating src/my_pkg/pyproject.toml" in told
     assert "note: --node-name: not used by a graphflow project; for a ROS 2 package, remove" in told
     assert not (tmp_path / "src/my_pkg/package.xml").exists()
+    told = machine.look("pkg", "create", "other", cwd=tmp_path)
+    assert "note: this is a graphflow project; for a ROS 2 package, remove other and add --build-type ament_pyt" in told
+    program = tmp_path / "other/other/talker.py"
+    program.write_text("import rclpy\nrclpy.init()\nrclpy.spin(rclpy.create_node('talker'))\n")
+    for folder, file in ((tmp_path, "other/other/talker.py"), (tmp_path / "other", "other/talker.py")):
+        told = machine.look("run", "other", "talker", cwd=folder, code=2)
+        assert f"other is a project of graphflow's; to run its program for rclpy: graphflow run {file}\n" in told
 
 
 def test_a_list_of_dependencies_takes_the_words_behind_it(machine: Machine, tmp_path: Path) -> None:

@@ -58,6 +58,14 @@ def test_a_class_by_its_path(project: Path) -> None:
     assert import_class("machines.robot:Robot") is sys.modules["machines.robot"].Robot
 
 
+def test_a_class_of_rclpy(project: Path) -> None:
+    """Its file is run as it is."""
+    file = project / "machines" / "old.py"
+    file.write_text("class Base: ...\n\nBase.__module__ = 'rclpy.node'\n\nclass Lamp(Base): ...\n")
+    with pytest.raises(GraphflowError, match=f"; it is one of rclpy, run by graphflow run {file}$"):
+        import_class("machines.old:Lamp")
+
+
 def test_a_file_with_the_name_of_a_package(project: Path) -> None:
     """It is hidden by the package, and is the one that is meant."""
     (project / "graphflow.py").write_text("class Robot: ...\n")
