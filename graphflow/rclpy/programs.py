@@ -92,16 +92,27 @@ def find_program(what: str, words: Sequence[str], here: Path) -> Program | None:
         raise UsageFault(f"name an executable of the package {what!r}: {', '.join(package.executables)}")
     found = _executable(package, words[0])
     if found is None:
-        if words[0].startswith("-") or not package.executables:
+        has_node = workspace is bundled() or (workspace.root / "nodes" / f"{what}.py").is_file()
+        if not package.executables or (words[0].startswith("-") and has_node):  # options of a node of that name
             return None
-        is_explained = words[0].removesuffix(".py") in package.why_no_executable
-        near = "" if is_explained else launching(words[0], [package]) or package.unnamed(words[0])
-        near = near or ("" if is_explained else did_you_mean(words[0], package.executables))
-        way = f"{package.why_no_executable}{workspace.way_to_double(what)}"
-        raise UsageFault(f"package {what!r} has no executable {words[0]!r}{near}{way}")
+        raise _without(package, words, workspace)
     file, entry = found
     is_ours = entry is not None and is_graphflows(file)
     return None if is_ours and not is_folder else Program(file, entry, workspace, list(words[1:]))
+
+
+def _without(package: Package, words: Sequence[str], workspace: Workspace) -> UsageFault:
+    """Return the error for a word that is no executable of a package: an option, or an unknown name."""
+    name = words[0]
+    if name.startswith("-"):
+        slip = ", and write --ros-args" if "-ros-args" in words else ""
+        listed = ", ".join(package.executables)
+        return UsageFault(f"name an executable of the package {package.name!r} before {name!r}{slip}: {listed}")
+    is_explained = name.removesuffix(".py") in package.why_no_executable
+    near = "" if is_explained else launching(name, [package]) or package.unnamed(name)
+    near = near or ("" if is_explained else did_you_mean(name, package.executables))
+    way = f"{package.why_no_executable}{workspace.way_to_double(package.name)}"
+    return UsageFault(f"package {package.name!r} has no executable {name!r}{near}{way}")
 
 
 def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] | None:
@@ -113,8 +124,6 @@ def _executable(package: Package, name: str) -> tuple[Path, EntryPoint | None] |
     if fault is not None:
         raise UsageFault(fault)
     entry = package.entry_points.get(known)
-    if entry is not None and known != name:
-        sys.stderr.write(f"note: the executable is called {known}; ROS 2 finds no {name}\n")
     return (package.programs[known], None) if entry is None else (package.file_of(entry), entry)
 
 
@@ -325,7 +334,10 @@ def _warn_of_build_faults(program: Program, name: str) -> None:
     if program.entry is not None:
         for package in program.workspace.packages.values():
             if program.file.is_relative_to(package.folder):
-                copied = package.copy_fault(package.known_as(name) or "")
+                known = package.known_as(name) or ""
+                if known in package.entry_points and known != name:
+                    sys.stderr.write(f"note: the executable is called {known}; ROS 2 finds no {name}\n")
+                copied = package.copy_fault(known)
                 for fault in [*package.build_faults, *([] if copied is None else [copied])]:
                     sys.stderr.write(f"note: {fault}\n")
 

@@ -13,7 +13,7 @@ import pytest
 
 from graphflow.errors import UsageFault
 from graphflow.msgs import registry
-from graphflow.rclpy.programs import _imported_in, _note_other, _where_to_have, find_program
+from graphflow.rclpy.programs import _imported_in, _note_other, _warn_of_build_faults, _where_to_have, find_program
 from graphflow.transport.rendezvous import free_endpoint
 from graphflow.workspace.packages import BUNDLED, find_workspace
 from tests.cases import slow
@@ -97,11 +97,23 @@ def test_a_program_is_a_file_or_an_executable_of_a_package(workspace: Path) -> N
         assert find_program(what, words, workspace) is None
 
 
+@pytest.mark.parametrize(
+    ("words", "slip"),
+    [(["-", "-ros-args", "-r", "a:=b"], ", and write --ros-args"), (["--ros-args", "-r", "a:=b"], "")],
+)
+def test_a_package_without_an_executable(workspace: Path, words: list[str], slip: str) -> None:
+    """Options come after it."""
+    with pytest.raises(UsageFault) as caught:
+        find_program("lamp", words, workspace)
+    assert str(caught.value).startswith(f"name an executable of the package 'lamp' before {words[0]!r}{slip}: ")
+
+
 def test_an_executable_with_a_suffix(workspace: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """It is found, and the name that ROS 2 takes is noted."""
+    """It is found, and the name that ROS 2 takes is noted, once it runs."""
     found = find_program("lamp", ["lamp.py"], workspace)
     assert found is not None
     assert found.entry == ("lamp.node", "main")
+    _warn_of_build_faults(found, "lamp.py")
     assert capsys.readouterr().err == "note: the executable is called lamp; ROS 2 finds no lamp.py\n"
 
 

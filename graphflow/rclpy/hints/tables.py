@@ -95,7 +95,9 @@ TEXTS: dict[str, str] = {
     r"Third element (.*) at index .* is not a ParameterDescriptor": (
         "the third argument is a ParameterDescriptor(description={0!r}), from rcl_interfaces.msg"
     ),
-    r"unknown ROS arguments: .*'[^' ]+ [^']*'": "each word is an argument of its own, as in ['-p', 'speed:=1.0']",
+    r"unknown ROS arguments: [^;]*'[^' ]+ [^']*'[^;]*\]$": (
+        "each word is an argument of its own, as in ['-p', 'speed:=1.0']"
+    ),
     r"not supported between instances of .*'array\.array'": (
         "that is a whole array: compare an element, as in ranges[0], or min(ranges)"
     ),
