@@ -36,7 +36,7 @@ LOOKS, TOO_MANY = 10, 7
 """Checks in a row, and the number of them that must find the loop blocked to be reported, if each block is shorter."""
 STACK_SHOWN = 6
 """Lines of the stack in a report, from the user's code inwards."""
-_REMEDY = "Await the slow part, or move it to a thread: thread=True, or await self.offload(...)"
+_REMEDY = "Await the slow part, or move it to a thread: await self.offload(...), or thread=True where it is no @task"
 _OUTSIDE = "Await the slow part, or move it to a thread: await asyncio.to_thread(...)"
 """The same in code without a node at hand."""
 _HELD = "it was stopped, C code held it, or the machine is overloaded"

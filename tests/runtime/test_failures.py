@@ -80,7 +80,8 @@ class Follower(Node):
             "/turtle1/x",
             "'data'; nobody publishes /x [std_msgs/msg/Float64]; did you mean '/turtle1/x', which /leader pub",
         ),
-        ("/y", "'data'. The node ends"),  # which may not be meant
+        ("/x_raw", "'data'. The node ends"),  # which may not be meant
+        ("/y", "'data'; nobody publishes /x [std_msgs/msg/Float64], and nobody listens to /y of /leader: if they"),
         ("", "'data'. The node ends"),
     ],
 )

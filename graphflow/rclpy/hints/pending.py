@@ -39,6 +39,17 @@ def early_result(error: BaseException, frames: list[FrameType]) -> str:
                 for early in early_returns(syntax_of(frame.f_code.co_filename).module):
                     if early.function == last_name(called):
                         return f"{short_place(frame.f_code.co_filename, early.line)}: {early.text}"
+    return _spun_for_result(frame.f_code.co_filename)
+
+
+def _spun_for_result(file: str) -> str:
+    """Return the correction of a line that takes a spin's result for its future's; empty if there is none."""
+    for node in syntax_of(file).nodes:
+        match node:
+            case ast.Assign(targets=[target], value=ast.Call(func=called, args=[_, future, *_])):
+                if last_name(called) == "spin_until_future_complete":
+                    way = f"write it alone, and then {ast.unparse(target)} = {ast.unparse(future)}.result()"
+                    return f"{ast.unparse(called)} ({short_place(file, node.lineno)}) returns None: {way}"
     return ""
 
 

@@ -360,7 +360,8 @@ def with_argument_hints(function: Callable[P, T]) -> Callable[P, T]:
             fault = _fault(function, args, kwargs)
             if not fault:
                 raise
-        raise DeclarationError(f"{here()}: {called} {fault}; write {EXAMPLES[called]}")
+        way = "put what blocks into await self.offload(...)" if "thread" in kwargs else f"write {EXAMPLES[called]}"
+        raise DeclarationError(f"{here()}: {called} {fault}; {way}")
 
     return checked
 

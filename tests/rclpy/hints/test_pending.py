@@ -91,3 +91,20 @@ def test_a_result_that_a_function_returns_early(tmp_path: Path, returned: str) -
         f"lamp.py:{line}: future.result() is None there, since nothing spins after line 2; write before it: "
         "rclpy.spin_until_future_complete(node, future)"
     )
+
+
+@pytest.mark.parametrize("used", ["response.sum", "ask(None).sum"])
+def test_the_result_of_a_spin(tmp_path: Path, used: str) -> None:
+    """It is none; the line is named, also where a function returns it."""
+    source = (
+        "def spin_until_future_complete(node, future):\n    pass\n\ndef ask(node):\n    future = 3\n"
+        "    response = spin_until_future_complete(node, future)\n    return response\n\ndef main(node):\n"
+        f"    response = ask(node)\n    print({used})\n"
+    )
+    file = tmp_path / "lamp.py"
+    file.write_text(source)
+    space: dict[str, Any] = {"__name__": "lamp"}
+    exec(compile(source, str(file), "exec"), space)
+    assert hint_of(lambda: space["main"](None)) == (
+        "spin_until_future_complete (lamp.py:6) returns None: write it alone, and then response = future.result()"
+    )

@@ -119,7 +119,7 @@ def _setter(thing: object, name: str, running: Collection[CodeType]) -> str:
                     return f"{where} sets it, and nothing calls that: write __init__"
                 if inspect.getattr_static(type(thing), word) is not method:
                     return f"{where} sets it, and {type(thing).__name__} replaces that: call super().{word}() there"
-                return f"{where} sets it but has not run yet: start with {name} = None in the class"
+                return f"{where} sets it, and has not run: have it called before, or write {name} = None in the class"
     return ""
 
 

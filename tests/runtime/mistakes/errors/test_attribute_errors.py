@@ -198,7 +198,7 @@ class Follower(Node):
 def test_attributes_that_a_method_sets_later() -> None:
     """The method is named, unless it has run long ago."""
     node = Follower()
-    later = "; moved (test_attribute_errors.py:{}) sets it but has not run yet: start "
+    later = "; moved (test_attribute_errors.py:{}) sets it, and has not run: have it called before, "
     for name, text in (("pose", later), ("unmade", "")):
         with pytest.raises(AttributeError) as caught:
             getattr(node, name)
