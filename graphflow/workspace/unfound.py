@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from graphflow.reading import found_text
-from graphflow.workspace.manifest import name_fault
 from graphflow.workspace.packages import Folder, Package, Workspace, cmake_text, folders, workspace_around
 
 _BUILT = ("setup.py", "CMakeLists.txt")
@@ -132,6 +131,8 @@ def _candidates(name: str, workspace: Workspace) -> Iterator[Folder]:
 def _renamed(found: Folder, name: str) -> str | None:
     if found.package == name:  # it is in another workspace
         return None
+    from graphflow.workspace.manifest import name_fault  # with an XML parser, only after a mistake
+
     if name_fault(found.path, name) is None and name_fault(found.path, str(found.package)) is not None:
         file = _shown(found.path / "package.xml")
         return f"{file} has the name {found.package!r}, and setup.py beside it {name!r}: write <name>{name}</name>"
