@@ -109,7 +109,7 @@ def _without(package: Package, words: Sequence[str], workspace: Workspace) -> Us
         listed = ", ".join(package.executables)
         return UsageFault(f"name an executable of the package {package.name!r} before {name!r}{slip}: {listed}")
     is_explained = name.removesuffix(".py") in package.why_no_executable
-    near = "" if is_explained else launching(name, [package]) or package.unnamed(name)
+    near = "" if is_explained else launching(name, [package]) or package.missing_entry(name)
     near = near or ("" if is_explained else did_you_mean(name, package.executables))
     way = f"{package.why_no_executable}{workspace.way_to_double(package.name)}"
     return UsageFault(f"package {package.name!r} has no executable {name!r}{near}{way}")

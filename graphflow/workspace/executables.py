@@ -151,7 +151,7 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
         if not own.executables:
             text = f"the package {package!r} has no executable that graphflow can run{own.why_no_executable}"
             raise NoExecutable(text, is_slip=bool(own.why_no_executable))
-        near = own.unnamed(name) or did_you_mean(name, own.executables)
+        near = own.missing_entry(name) or did_you_mean(name, own.executables)
         near = near or f"; there is {', '.join(own.executables)}"
         near += own.why_no_executable + workspace.way_to_double(package)
         raise NoExecutable(f"the package {package!r} has no executable {name!r}{near}", is_slip=True)

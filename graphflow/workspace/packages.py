@@ -197,7 +197,7 @@ class Package:
         too_high = f"{above} is one folder too high: move it into {file.parent}" if above.is_file() else ""
         return f"{head} there is no {file}; {too_high or meant}"
 
-    def unnamed(self, executable: str) -> str:
+    def missing_entry(self, executable: str) -> str:
         """Return the entry that `setup.py` lacks for a module of that name, to append; empty if there is none."""
         module = self.folder / self.name / f"{executable.removesuffix('.py')}.py"
         if not module.is_file() or not (self.folder / "setup.py").is_file():

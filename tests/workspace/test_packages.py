@@ -481,7 +481,7 @@ def test_a_module_that_no_entry_names(tmp_path: Path) -> None:
     setup = "setup(entry_points={'console_scripts': ['arm = a.arm:main']})"
     folder = package(tmp_path / "a", "a", setup_dot_py=setup, a__arm_dot_py="def main(): ...", a__leg_dot_py="")
     found = find_workspace(tmp_path).packages["a"]
-    assert found.unnamed("leg") == (
+    assert found.missing_entry("leg") == (
         f"; leg.py is there: add 'leg = a.leg:main' to the console_scripts of {folder}/setup.py"
     )
-    assert found.unnamed("head") == ""
+    assert found.missing_entry("head") == ""

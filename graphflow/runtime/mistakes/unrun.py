@@ -17,7 +17,7 @@ from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 
 _RUNS = re.compile(r"\b(run|running|serve|make|Graph|interface)\b\s*\(|\bContext\b")
 """Names in programs that run or inspect nodes in another way."""
-_IMPORTS = re.compile(r"^import graphflow$", re.MULTILINE)
+_IMPORTS = re.compile(r"^import graphflow\b(?!\.)", re.MULTILINE)
 _classes: list[str] = []
 """Node classes defined in the program's own file."""
 _file: str | None = None

@@ -20,13 +20,18 @@ TEXT = (
 )
 
 
-def lamp(tmp_path: Path, body: str) -> Any:
-    """The class of a file, with that body of its method."""
+def names_of(tmp_path: Path, source: str) -> dict[str, Any]:
+    """The names that a file with that source defines."""
     file = tmp_path / "lamp.py"
-    file.write_text(source := HEAD + "".join(f"        {line}\n" for line in body.splitlines()))
+    file.write_text(source)
     space: dict[str, Any] = {"__name__": "lamp"}
     exec(compile(source, str(file), "exec"), space)
-    return space["Lamp"]
+    return space
+
+
+def lamp(tmp_path: Path, body: str) -> Any:
+    """The class of a file, with that body of its method."""
+    return names_of(tmp_path, HEAD + "".join(f"        {line}\n" for line in body.splitlines()))["Lamp"]
 
 
 def told(tmp_path: Path, body: str, future: object) -> str:
@@ -81,10 +86,7 @@ def test_a_result_that_a_function_returns_early(tmp_path: Path, returned: str) -
         "def ask(client):\n    future = client.call_async(1)\n    result = future.result()\n"
         f"    return {returned}\n\ndef main(client):\n    response = ask(client)\n    print(response.sum)\n"
     )
-    file = tmp_path / "lamp.py"
-    file.write_text(source)
-    space: dict[str, Any] = {"__name__": "lamp"}
-    exec(compile(source, str(file), "exec"), space)
+    space = names_of(tmp_path, source)
     client = SimpleNamespace(call_async=lambda _: Future())
     line = 3 if returned == "result" else 4
     assert hint_of(lambda: space["main"](client)) == (
@@ -101,10 +103,7 @@ def test_the_result_of_a_spin(tmp_path: Path, used: str) -> None:
         "    response = spin_until_future_complete(node, future)\n    return response\n\ndef main(node):\n"
         f"    response = ask(node)\n    print({used})\n"
     )
-    file = tmp_path / "lamp.py"
-    file.write_text(source)
-    space: dict[str, Any] = {"__name__": "lamp"}
-    exec(compile(source, str(file), "exec"), space)
+    space = names_of(tmp_path, source)
     assert hint_of(lambda: space["main"](None)) == (
         "spin_until_future_complete (lamp.py:6) returns None: write it alone, and then response = future.result()"
     )

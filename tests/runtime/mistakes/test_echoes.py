@@ -60,7 +60,7 @@ async def test_the_watch_ends_with_the_publisher(graph: Graph) -> None:
 
 
 async def test_a_loop_is_told_again_at_its_end(graph: Graph) -> None:
-    """What it prints has hidden the warning; a loop that has ended before is not told again."""
+    """The warning comes below the output that hides the first; a loop that has ended before is not told again."""
     counts = Counts(graph.clock)
     counts.echo.follow(has_own=True)
     for _ in range(4):
