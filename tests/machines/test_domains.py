@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from graphflow.machines.domains import by_domain, elsewhere
+from graphflow.machines.domains import by_domain, elsewhere, with_counterpart
 from graphflow.wire.liveliness import Entity, Kind
 
 
@@ -33,3 +33,11 @@ def test_nodes_are_counted() -> None:
 def test_a_domain_without_others(nodes: list[str], told: str) -> None:
     """Is told where others have nodes."""
     assert elsewhere(112, tokens(*nodes), "go to {}", ["/own"]) == told
+
+
+@pytest.mark.parametrize(("type_", "found"), [("std_msgs/msg/String", {7}), ("std_msgs/msg/Int32", set())])
+def test_a_counterpart_in_another_domain(type_: str, found: set[int]) -> None:
+    """It has the same name and type: many programs have a topic of a common name."""
+    own = Entity(0, "z", 1, 1, Kind.SUBSCRIPTION, "/", "ear", "/topic", "std_msgs/msg/String")
+    other = Entity(7, "y", 1, 1, Kind.PUBLISHER, "/", "mouth", "/topic", type_, "RIHS01_0")
+    assert with_counterpart([own], [other.token]) == found

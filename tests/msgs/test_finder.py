@@ -91,8 +91,9 @@ def test_a_class_without_its_kind() -> None:
 def test_a_wrong_definition_is_told_on_import(save: Save) -> None:
     """Importing a definition with a mistake tells file, line and rule."""
     file = save("find_wrong/msg/Thing", "float64 X")
-    with pytest.raises(InterfaceError, match=f"^{file}: find_wrong/msg/Thing line 1: field name 'X'"):
+    with pytest.raises(InterfaceError, match=f"^{file}: find_wrong/msg/Thing line 1: field name 'X'") as caught:
         _ = module("find_wrong.msg").Thing
+    assert [entry.name for entry in caught.traceback[1:]] == ["make"]  # the frames below it tell a user nothing
 
 
 def test_a_field_of_a_type_that_is_not_there(save: Save) -> None:

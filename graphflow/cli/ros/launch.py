@@ -13,7 +13,7 @@ from graphflow.cli import exits, output
 from graphflow.cli.arguments import GraphCommand
 from graphflow.cli.verbs import Verbs
 from graphflow.errors import Place, Problem, UsageFault
-from graphflow.names import did_you_mean
+from graphflow.names import did_you_mean, nearest
 from graphflow.workspace.packages import FOLDERS_BOUND
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
         UsageFault: The package does not exist or has no such file.
     """
     from graphflow.cli.substitutes import no_package
-    from graphflow.workspace.executables import of_ros, package_share
+    from graphflow.workspace.executables import SLIP, of_ros, package_share
     from graphflow.workspace.packages import find_workspace
     from graphflow.workspace.project import demos_root, project_root
     from graphflow.workspace.unfound import uninstalled_files, why_no_package
@@ -109,8 +109,8 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
             graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
             way = f"; to start its graph: graphflow up {first}" if graph else "; graphflow launch FILE starts a file"
             raise UsageFault(f"the package {first!r} that comes with graphflow has no launch files{way}")
-        known = [*find_workspace(Path.cwd()).packages, *of_ros()]
-        way = did_you_mean(first, (), hidden=known) or _ELSEWHERE
+        near = nearest(first, [*find_workspace(Path.cwd()).packages, *of_ros()], cutoff=SLIP)
+        way = f"; did you mean {near!r}?" if near is not None else _ELSEWHERE
         raise UsageFault(f"Package {first!r} not found{f': {why}' if why else way}")
     files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0]) and file.suffix in _ENDINGS]

@@ -252,7 +252,7 @@ def _elsewhere(cls: type[StrictMessage], name: str) -> str:
     for order in (("Request", "Response"), ("Goal", "Result", "Feedback")):
         for part in order if own in order else ():
             other = getattr(of_type, part, None)
-            if part != own and other is not None and any(field.name == name for field in other.SCHEMA.fields):
+            if other is not None and any(field.name == name for field in other.SCHEMA.fields):
                 text = f"; {name} is in {whole}.{part}: use that, or correct the order of the definition"
                 return f"{text}, {' --- '.join(order).lower()}"
     return ""

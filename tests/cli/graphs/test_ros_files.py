@@ -82,6 +82,9 @@ def test_a_setup_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     [problem] = json.loads(capsys.readouterr().out)["problems"]
     assert (problem["file"], problem["line"]) == (str(file), 0)
     assert problem["message"].startswith("names no executable: add 'go = lamp.go:main'")
+    file.write_text(SETUP.format("'go = lamp.go:main'").replace("setup(", "setup(name='lump', "))
+    assert check_setup(file, as_json=False) == exits.USAGE
+    assert f"{file}:2: the package is called 'lump' here, and 'lamp' in package.xml" in capsys.readouterr().err
     file.write_text(SETUP.format("'on = lamp.on:main'"))
     assert check_setup(file, as_json=True) == exits.USAGE
     [problem] = json.loads(capsys.readouterr().out)["problems"]

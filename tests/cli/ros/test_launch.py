@@ -70,7 +70,8 @@ def test_what_is_no_launch_file(machine: Machine, tmp_path: Path) -> None:
     assert "does not exist" in machine.look("launch", "convert", "gone.xml", code=2)
     told = machine.look("launch", "demo_nodes_py", "talker.launch.py", code=2)
     assert "comes with graphflow has no launch files; graphflow launch FILE starts a file" in told
-    assert "Package 'nav2' not found" in machine.look("launch", "nav2", "a.launch.xml", code=2)
+    assert "Package 'nav2' not found; go to" in machine.look("launch", "nav2", "a.launch.xml", code=2)
+    assert "did you mean 'turtlesim'?" in machine.look("launch", "turtlesmi", "a.launch.xml", code=2)
 
 
 LAUNCH = "launch:\n- arg: {name: rate, default: '2'}\n- node: {pkg: demo_nodes_py, exec: talker}\n"

@@ -104,6 +104,18 @@ def test_two_packages_of_one_name(machine: Machine, workspace: Path) -> None:
     (workspace / "src/more/lamp/package.xml").write_text("<package><name>lamp</name></package>")
     said = machine.look("ws", cwd=workspace, code=1)
     assert f"src/more/lamp: another package is called 'lamp', too, and takes precedence: {workspace}" in said
+    (workspace / "src/more/lamp/setup.py").write_text("from setuptools import setup\nsetup(name='lump')\n")
+    named = "the package is called 'lump' here, and 'lamp' in package.xml"
+    assert f"src/more/lamp/setup.py:2: {named}" in machine.look("ws", cwd=workspace, code=1)
+    assert named in machine.look("check", "src/more/lamp/setup.py", cwd=workspace, code=2)
+
+
+def test_executables_of_a_package_with_faults(machine: Machine, workspace: Path) -> None:
+    """They are listed, and the exit code tells of the faults."""
+    assert machine.look("pkg", "executables", "lamp", cwd=workspace, code=0)
+    setup = workspace / "src/lamp/setup.py"
+    setup.write_text("from setuptools import setup\nsetup(entry_points={'console_scripts': ['a = lamp.a']})\n")
+    assert "error: " in machine.look("pkg", "executables", "lamp", cwd=workspace, code=1)
 
 
 def test_a_package_without_executables(machine: Machine, workspace: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import inspect
 from collections.abc import AsyncIterator, Callable, Iterator
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -88,6 +88,7 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
     (lambda: action(Fibonacci, "x", accept=anything("all")), "@action: accept= takes a method defined above"),
     (lambda: action(Fibonacci, "x", cancellable=anything(1)), "@action: cancellable= takes a method"),
     (lambda: action(Fibonacci, "x", cleanup_timeout=0.0), "cleanup_timeout must be more than 0 seconds, not 0.0"),
+    (lambda: cast(Any, task)(thread=True), "task has no thread=; put what blocks into await self.offload"),
     (lambda: action(Fibonacci, "x", thread=True)(of_two), "of_two: thread=True is for `def`, an `async def` runs"),
 ]
 # fmt: on

@@ -8,9 +8,11 @@ import logging
 import pytest
 
 from graphflow import Node, timer
+from graphflow.analysis.mistakes.calls.hidden_logs import HIDDEN
 from graphflow.runtime.context import Context
 from graphflow.runtime.mistakes import at_start
 from graphflow.runtime.mistakes.at_start import warn_at_start
+from graphflow.runtime.mistakes.source import slips
 from graphflow.runtime.mistakes.source.module_variables import Exchanged
 from graphflow.runtime.node_core import core_of
 from graphflow.testing import Graph
@@ -35,6 +37,16 @@ def test_slips_and_shared_lists(caplog: pytest.LogCaptureFixture, is_alone: bool
     slip, *shared = caplog.messages
     assert "did you mean on_start?" in slip
     assert ["`crumbs_on_the_way = []` in the class is one list" in text for text in shared] == [True] * (not is_alone)
+
+
+@pytest.mark.parametrize("level", [logging.DEBUG, logging.INFO])
+def test_a_log_that_is_shown(caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch, level: int) -> None:
+    """A hint to the log level is left out where the level is given."""
+    monkeypatch.setattr(slips, "slips", lambda cls: (f"robot.py:3: {HIDDEN}",))
+    log = logging.getLogger("test")
+    log.setLevel(level)
+    warn_at_start(log, object.__new__(Robot), [], is_regrouped=True)
+    assert caplog.messages == ([] if level == logging.DEBUG else [f"robot.py:3: {HIDDEN}"])
 
 
 class Other(Node):

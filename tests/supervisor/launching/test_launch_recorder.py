@@ -570,6 +570,14 @@ def test_rclpys_node_in_a_launch_file(tmp_path: Path) -> None:
 
 
 @slow
+def test_a_path_whose_parts_are_no_list(tmp_path: Path) -> None:
+    """It is one problem, with the brackets to write."""
+    body = "return LaunchDescription([Node(package='a', executable='b', name=PathJoinSubstitution(x, 'a', 'b'))])"
+    [problem], _ = described(tmp_path, body)
+    assert problem == "1: PathJoinSubstitution takes a list: write [ ] around LaunchConfiguration(...), 'a', 'b'"
+
+
+@slow
 def test_a_package_that_is_misspelt(tmp_path: Path) -> None:
     """The problem names the nearest of the workspace."""
     (tmp_path / "src" / "turret").mkdir(parents=True)

@@ -33,6 +33,13 @@ def test_the_only_spin() -> None:
     assert text.endswith("write rclpy.spin(Talker())")
 
 
+def test_several_that_are_all_there_is() -> None:
+    """The last one is told."""
+    [(line, text)] = _found("rclpy.spin_once(talker)\n    rclpy.spin_once(listener)")
+    assert line == 8
+    assert text.endswith("write rclpy.spin(listener)")
+
+
 @pytest.mark.parametrize("made", ["subscription(Int32, 'a', self.heard, 10)", "service(Trigger, 'go', self.go)"])
 @pytest.mark.parametrize("after", ["", "node.destroy_node()\n    rclpy.shutdown()"])
 def test_a_listener_that_ends(made: str, after: str) -> None:

@@ -164,6 +164,11 @@ def test_operands(monkeypatch: pytest.MonkeyPatch, text: str, line: str, remark:
         ("'HandlerGroup' object does not support the context manager protocol", "with self.motion:", GROUP),
         ("'HandlerGroup' object does not support the asynchronous context", "async with self.motion:", GROUP),
         ("'Group' object does not support the asynchronous context manager", "async with self.motion:", GROUP),
+        (
+            "object ClientGoalHandle can't be used in 'await' expression",
+            "result = await sent",
+            "that is the goal at the server: write await sent.result()",
+        ),
         ("'HandlerGroup' object has no attribute 'acquire'", "await self.motion.acquire()", GROUP),
         (
             "'async for' requires an object with __aiter__ method, got Subscription",

@@ -9,7 +9,9 @@ from typing import Any
 import pytest
 
 import rclpy
+from graphflow.analysis.mistakes.calls.hidden_logs import HIDDEN
 from rclpy.impl.deadlock import waiting
+from rclpy.impl.logging_severity import LoggingSeverity
 from rclpy.impl.mistakes.uncalled import Uncalled
 from rclpy.node import Node
 from tests.rclpy.conftest import Spinner
@@ -115,3 +117,20 @@ def test_nodes_that_left(node: Node) -> None:
     for _ in range(3):
         Node("lamp").destroy_node()
     assert watch._nodes == set()
+
+
+@pytest.mark.parametrize("is_shown", [True, False])
+def test_a_log_that_is_shown(
+    node: Node, spin: Spinner, caplog: pytest.LogCaptureFixture, tmp_path: Path, is_shown: bool
+) -> None:
+    """A hint to the log level is left out where the level is given."""
+    source = "def tick():\n    node.get_logger().debug('on')\n\ndef main():\n    rclpy.spin(node)\n"
+    file = tmp_path / "lamp.py"
+    file.write_text(source)
+    space: dict[str, Any] = {"node": node}
+    exec(compile(source, str(file), "exec"), space)
+    node.create_timer(100.0, space["tick"])
+    node.get_logger().set_level(LoggingSeverity.DEBUG if is_shown else LoggingSeverity.INFO)
+    rclpy.spin_once(node, timeout_sec=0.0)
+    rclpy.shutdown()
+    assert (f"lamp.py:2: {HIDDEN}" in caplog.messages) is not is_shown

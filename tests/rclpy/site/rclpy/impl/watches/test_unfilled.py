@@ -65,14 +65,18 @@ def test_a_new_one_in_each_call(node: Node, spin: Spinner, caplog: pytest.LogCap
     """It is told once, at the second; one that a program makes beside its callbacks is its own affair."""
     made: list[Buffer] = []
 
+    told_at: list[int] = []
+
     def tick() -> None:
         made.append(Buffer())
+        told_at.append(len(caplog.messages))
 
     tick()
     tick()
     assert caplog.messages == []
     node.create_timer(0.01, tick)
     spin(lambda: len(made) > 5)
+    assert told_at[:4] == [0, 0, 0, 1]  # two calls were made above
     line = tick.__code__.co_firstlineno + 1
     assert caplog.messages == [
         f"test_unfilled.py:{line}: each call creates a new Buffer, which holds no transforms yet: create it and its "
