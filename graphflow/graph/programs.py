@@ -15,7 +15,7 @@ from graphflow.graph.model import NodeSpec
 from graphflow.markup import source
 from graphflow.markup.source import Source
 from graphflow.markup.substitutions import Outside
-from graphflow.workspace.executables import NoExecutable, command_of
+from graphflow.workspace.executables import NoExecutable, command_of, spelling_fault
 from graphflow.workspace.packages import Workspace, find_workspace
 from graphflow.workspace.project import home_hint
 
@@ -64,6 +64,9 @@ class Programs:
         place = self._src.place((*at, "exec"))
         if not spec.pkg:
             return self._file(spec, place)
+        package = self._workspace.packages.get(spec.pkg)
+        if package is not None and (fault := spelling_fault(package, spec.exec_)) is not None:
+            self._problems.remark(place, fault)
         try:
             return command_of(spec.pkg, spec.exec_, self._workspace, self._outside.env)
         except NoExecutable as error:

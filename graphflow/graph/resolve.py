@@ -31,6 +31,7 @@ from graphflow.markup.source import Source
 from graphflow.markup.substitutions import Outside, Run
 from graphflow.markup.tree import Item, source_of, tree
 from graphflow.names import Resolver, check_references, expand, split
+from graphflow.workspace.package_share import in_launch_file
 from graphflow.workspace.project import no_file, project_root, shown
 
 _ANYBODY = (
@@ -198,13 +199,16 @@ class _ParamsFiles:
         return [(name, self._src.place((*at, i))) for i, name in enumerate(spec.shared_params_file)]
 
     def _path(self, name: str, place: Place) -> Path:
-        return self._graph_files[place.file].parent / name
+        is_here = place.file in self._problems.launch_files and Path(name).is_file()  # as ROS takes it
+        return Path(name).absolute() if is_here else self._graph_files[place.file].parent / name
 
     def _read(self, path: Path, place: Place) -> list[Section]:
         if "$(" in str(path):  # a substitution that failed, which has been reported
             return []
         if not path.is_file():
-            self._problems.add_unless_ros(place, no_file(path))
+            is_of_launch = place.file in self._problems.launch_files
+            in_package = in_launch_file(path, self._graph_files[place.file]) if is_of_launch else ""
+            self._problems.add_unless_ros(place, no_file(path, in_package))
             return []
         try:
             return params_file.read(path, shown(path), self._problems.remark)

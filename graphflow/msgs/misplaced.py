@@ -17,6 +17,13 @@ def camel(name: str) -> str:
     return "".join(part[:1].upper() + part[1:] for part in re.split("[_-]", name))
 
 
+def misplaced(folder: Path, package: str) -> dict[Path, Path]:
+    """Return the definitions in a package's folder that are not read, with their right paths."""
+    patterns = ("*", "*/*", f"{package}/*/*")
+    found = {f: folder / k / f.name for k in idl.KINDS for at in patterns for f in sorted(folder.glob(f"{at}.{k}"))}
+    return {file: right for file, right in found.items() if file != right}
+
+
 def without_kinds(package: str, own: Path | None, roots: Sequence[Path]) -> str:
     """Describe what a package's folder lacks, definitions or the package's name; empty if nothing.
 
@@ -24,8 +31,9 @@ def without_kinds(package: str, own: Path | None, roots: Sequence[Path]) -> str:
         own: The folder of the package by itself; None for one below `roots`.
     """
     if own is not None:
-        file = next((f for kind in idl.KINDS for f in sorted(own.glob(f"*/*.{kind}"))), None)
-        return f"; {file} must be {own / file.suffix[1:] / file.name}" if file is not None else ""
+        wrong = next(iter(misplaced(own, package).items()), None)
+        none = f"; {own} has no .msg, .srv or .action files"
+        return none if wrong is None else f"; {wrong[0]} must be {wrong[1]}"
     found = [root / package for root in roots if package.isidentifier() and (root / package).is_dir()]
     if found:
         return f"; {found[0]} has no folder msg, srv or action"

@@ -30,7 +30,7 @@ from graphflow.rclpy.messages import finder
 from graphflow.runtime.mistakes import unrun
 from graphflow.system import offer_ros2
 from graphflow.wire.profile import wire_profile
-from graphflow.workspace.executables import EXECUTABLES, SLIP, of_ros
+from graphflow.workspace.executables import EXECUTABLES, SLIP, of_ros, spelling_fault
 from graphflow.workspace.installed import package_of
 from graphflow.workspace.packages import (
     BUNDLED,
@@ -266,11 +266,13 @@ def _not_in_package(package: Package, module: str, workspace: Workspace, wanted:
     name, _, kind = module.partition(".")
     if name in of_ros():
         return f"your package {package.folder} hides ROS 2's {name}; rename yours, there and in its files"
+    for file, right in package.misplaced_interfaces.items():
+        if right.suffix == f".{kind}" or module == name:
+            return f"{file} must be {right}"
+    if module == name:
+        return f"{package.folder} has neither Python modules of that name nor .msg, .srv or .action files"
     if kind not in KINDS:
         return f"{name} has no module {module}; the package is {package.folder}"
-    for file, right in package.misplaced_interfaces.items():
-        if right.suffix == f".{kind}":
-            return f"{file} must be {right}"
     others = [p.name for p in workspace.packages.values() if p.has_kind(kind)]
     owners = [other for other in others if wanted in registry.names_in(other, kind)]
     if owners:
@@ -335,10 +337,8 @@ def _warn_of_build_faults(program: Program, name: str) -> None:
         for package in program.workspace.packages.values():
             if program.file.is_relative_to(package.folder):
                 known = package.known_as(name) or ""
-                if known in package.entry_points and known != name:
-                    sys.stderr.write(f"note: the executable is called {known}; ROS 2 finds no {name}\n")
-                copied = package.copy_fault(known)
-                for fault in [*package.build_faults, *([] if copied is None else [copied])]:
+                faults = [spelling_fault(package, name), *package.build_faults, package.copy_fault(known)]
+                for fault in filter(None, faults):
                     sys.stderr.write(f"note: {fault}\n")
 
 

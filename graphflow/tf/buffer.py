@@ -275,12 +275,7 @@ class TransformBuffer(AttributeHints):
             return self._of_publisher(error)
         if isinstance(error, UnknownFrame) and not self._frames.names():
             senders = {e.node_name for s in self._subscriptions for e in s.matched.values()} - {self._owner.full_name}
-            if not senders:
-                return f"; no node publishes {' or '.join(s.name for s in self._subscriptions)}"
-            one = len(senders) == 1
-            sends = "publishes transforms, and has sent none" if one else "publish transforms, and have sent none"
-            text = f"; {', '.join(sorted(senders)[:3])} {sends} since this node listens"
-            return f"{text}: a frame that never moves needs send_static (StaticTransformBroadcaster)"
+            return self._reports.nothing_known(senders, [one.name for one in self._subscriptions])
         return ""
 
     def _of_publisher(self, error: ExtrapolationError) -> str:

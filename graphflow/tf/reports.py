@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Collection, Iterable
 
 MOVES = 3
 """Poses after the first with which a static frame counts as moving; a calibration may correct it once or twice."""
@@ -27,6 +28,19 @@ class Reports:
     def dropped(self, sender: str, fault: str) -> None:
         """Warn of a transform with a fault."""
         self._once("fault", fault, "a transform of %s is dropped: %s", sender, fault)
+
+    def nothing_known(self, senders: Collection[str], topics: Iterable[str]) -> str:
+        """Say why no frame is known, as the end of an error's text."""
+        faults = sorted(fault for kind, fault in self._reported if kind == "fault")
+        if faults:
+            return f"; all transforms so far were dropped: {faults[0]}"
+        if not senders:
+            return f"; no node publishes {' or '.join(topics)}"
+        sends = "publishes transforms, and has sent none"
+        if len(senders) > 1:
+            sends = "publish transforms, and have sent none"
+        text = f"; {', '.join(sorted(senders)[:3])} {sends} since this node listens"
+        return f"{text}: a frame that never moves needs send_static (StaticTransformBroadcaster)"
 
     def slash(self, sender: str, frame: str) -> None:
         """Warn of a frame's name that begins with a slash."""

@@ -105,6 +105,13 @@ def find(package: str, executable: str, root: Path) -> Executable | None:
     return Executable(nodes[executable], executable) if executable in nodes else None
 
 
+def spelling_fault(package: Package, executable: str) -> str | None:
+    """Return the fault of an executable's name that works here, and not in ROS 2."""
+    known = package.known_as(executable)
+    is_other = known in package.entry_points and known != executable
+    return f"the executable is called {known}; ROS 2 finds no {executable}" if is_other else None
+
+
 def as_name(executable: str) -> str:
     """Convert the name of an executable, or of a file, to a node's name."""
     return re.sub(r"[\W_]+", "_", Path(executable).name.removesuffix(".py")).strip("_") or "program"

@@ -17,7 +17,7 @@ from pathlib import Path, PurePosixPath
 
 from graphflow.folders import state_root
 from graphflow.reading import found_text, parsed
-from graphflow.workspace.packages import Package, cmake_text
+from graphflow.workspace.packages import Package, cmake_text, find_workspace
 from graphflow.workspace.setup_file import constant_text, constants
 
 FILES_BOUND = 5000
@@ -38,6 +38,25 @@ def share_folder(package: Package) -> Path:
     except OSError:  # the disk is full, or this system has no links
         return package.folder
     return folder
+
+
+def in_launch_file(missing: Path, launch_file: Path) -> str:
+    """Return how a launch file writes the path of a file of its package that is not where it was looked for.
+
+    Empty if the package has no such file.
+    """
+    packages = find_workspace(launch_file.parent).packages.values()
+    package = next((one for one in packages if launch_file.resolve().is_relative_to(one.folder)), None)
+    if package is None:
+        return ""
+    tails = ["/".join(missing.parts[-n:]) for n in range(len(missing.parts) - 1, 0, -1)]
+    tails += [f"{folder}/{missing.name}" for folder in ("config", "params")]
+    found = next((tail for tail in tails if (package.folder / tail).is_file()), None)
+    if found is None:
+        return ""
+    if launch_file.suffix != ".py":
+        return f"$(find-pkg-share {package.name})/{found}"
+    return f"os.path.join(get_package_share_directory({package.name!r}), {found!r})"
 
 
 def _installed(package: Package) -> Iterator[tuple[PurePosixPath, Path]]:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from graphflow.folders import home
+from graphflow.msgs.misplaced import misplaced
 from graphflow.names import nearest
 from graphflow.reading import lenient_text
 from graphflow.system import SITE
@@ -88,10 +89,9 @@ class Package:
 
     @property
     def misplaced_interfaces(self) -> dict[Path, Path]:
-        """Interface definitions in folders such as `msgs/`, which are not read, with their right paths."""
-        files = [(kind, file) for kind in KINDS for file in sorted(self.folder.glob(f"*/*.{kind}"))]
-        wrong = [(kind, file) for kind, file in files if file.parent.name != kind]
-        return {f: self.folder / kind / f.name for kind, f in wrong if f.parent.name.lower() in _NEAR_KINDS}
+        """Interface definitions that are not read, as those in `msgs/` or in no folder, with their right paths."""
+        found = misplaced(self.folder, self.name)
+        return {f: to for f, to in found.items() if f.parent == self.folder or f.parent.name.lower() in _NEAR_KINDS}
 
     @cached_property
     def entry_points(self) -> Mapping[str, EntryPoint]:

@@ -59,7 +59,7 @@ def add_interfaces(root: Path) -> None:
     if folder.is_dir():
         registry.add_root(folder)
     registry.add_later(installed.interfaces)
-    registry.add_later(lambda: find_workspace(root).interfaces)
+    registry.add_later(lambda: {package.name: package.folder for package in find_workspace(root).packages.values()})
 
 
 def demos_root() -> Path:
@@ -73,12 +73,18 @@ def bundled_graphs() -> dict[str, Path]:
     return {f.relative_to(folder).with_suffix("").as_posix(): f for f in sorted(folder.rglob("*.yaml"))}
 
 
-def no_file(path: Path) -> str:
-    """Return the message for a file that does not exist, with the most similar name."""
+def no_file(path: Path, elsewhere: str = "") -> str:
+    """Return the message for a file that does not exist, with the most similar name.
+
+    Args:
+        elsewhere: The right form of the path, if it is known.
+    """
     if path.exists():
         return f"{shown(path)} is not a regular file"
     if hint := home_hint(path):
         return f"there is no file {shown(path)}{hint}"
+    if elsewhere:
+        return f"there is no file {shown(path)}; write {elsewhere}"
     if elsewhere := _from_root(path):
         return f"there is no file {shown(path)}; a path begins at the file that has it: write {elsewhere}"
     beside = {file.stem: file.name for file in path.parent.glob("*.*")}

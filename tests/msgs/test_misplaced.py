@@ -19,14 +19,17 @@ def test_a_folder_with_a_dash(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert registry.no_kinds("lamp_msgs") == ""
 
 
-def test_definitions_in_a_folder_of_another_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("where", ["msgs/Light.msg", "Light.msg", "reg_moved/msg/Light.msg"])
+def test_definitions_in_a_wrong_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str) -> None:
     """Make no package; where they have to be is told."""
-    (tmp_path / "msgs").mkdir()
-    (tmp_path / "msgs" / "Light.msg").write_text("int8 level\n")
     monkeypatch.setattr(registry, "_packages", {"reg_moved": tmp_path})
+    with pytest.raises(UnknownInterface, match=f"'reg_moved'; {tmp_path} has no .msg, .srv or .action files$"):
+        registry.full_name("reg_moved/msg/Light")
+    (tmp_path / where).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / where).write_text("int8 level\n")
     assert "reg_moved" not in registry.packages()
     right = tmp_path / "msg" / "Light.msg"
-    with pytest.raises(UnknownInterface, match=f"'reg_moved'; {tmp_path}/msgs/Light.msg must be {right}$"):
+    with pytest.raises(UnknownInterface, match=f"'reg_moved'; {tmp_path / where} must be {right}$"):
         registry.full_name("reg_moved/msg/Light")
 
 

@@ -249,6 +249,17 @@ async def test_warnings(graph: Graph, caplog: pytest.LogCaptureFixture) -> None:
         assert any(text in line for line in ours), text
 
 
+async def test_nothing_but_faults(graph: Graph) -> None:
+    """A lookup names the fault for which all transforms were dropped."""
+    listener = Listener()
+    await graph.start(listener)
+    raw = graph.publisher(TFMessage, "/tf")
+    raw.publish(TFMessage(transforms=[Transform.of("odom", "base", rotation=(0.0, 0.0, 0.5, 1.0)).to_msg()]))
+    await graph.settle()
+    with pytest.raises(UnknownFrame, match="all transforms so far were dropped: the quaternion of 'base' is not norm"):
+        listener.tf.get("odom", "base")
+
+
 def test_what_is_sent_is_checked() -> None:
     """A transform that every listener would drop is refused where it is sent."""
     node = Listener()

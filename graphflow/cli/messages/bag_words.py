@@ -13,7 +13,7 @@ import click
 
 from graphflow.cli.verbs import Verb
 from graphflow.cli.words import pattern_option
-from graphflow.errors import UsageFault
+from graphflow.errors import InvalidName, UsageFault
 from graphflow.names import expand
 from graphflow.times import seconds_in
 
@@ -139,6 +139,16 @@ def take_choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: A
     is_open = not (named or services or regex)
     more.setdefault("all", is_open)
     return Choice(topics=named, services=services, regex=regex, **excluded, **more)
+
+
+def refuse_bags(topics: tuple[str, ...]) -> None:
+    """Refuse the path of a bag beside the topics to record, if it cannot be a topic's name."""
+    for word in topics if len(topics) > 1 else ():
+        try:
+            expand(word, "/", "cli")
+        except InvalidName as error:
+            if Path(word).parent.is_dir():
+                raise UsageFault(f"{error}; if it is the bag to be written, write -o {word}") from None
 
 
 def _check_format(_: click.Context, __: click.Parameter, word: str | None) -> str | None:

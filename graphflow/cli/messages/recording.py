@@ -216,11 +216,20 @@ def _warn_of_missing(node: Node, recorder: Recorder, folder: Path) -> None:
     for name in recorder.missing:
         service, cache = name.removesuffix(EVENTS), node.context.cache
         text = cache.unpublished(name) if service == name else cache.without_events(service)
-        if recorder.topics and folder.name.startswith(UNNAMED) and name.count("/") == 1 and "did you mean" not in text:
-            text += f"; if {name[1:]} is the name of the bag, write -o {name[1:]}"
+        bag = _as_bag(name)
+        if recorder.topics and folder.name.startswith(UNNAMED) and bag and "did you mean" not in text:
+            text += f"; if {bag} is the name of the bag, write -o {bag}"
         output.talk(f"WARNING: {text}")
     for text in recorder.unused_options:
         output.talk(f"WARNING: {text}")
+
+
+def _as_bag(name: str) -> str:
+    """Return the bag that a topic's name may mean: a name alone, or a path whose folder exists; empty for others."""
+    inner = name[1:]
+    if "/" not in inner:
+        return inner
+    return next((path for path in (name, inner) if Path(path).parent.is_dir()), "")
 
 
 async def _show(recorder: Recorder, began: float) -> None:

@@ -19,6 +19,7 @@ from graphflow.cli.messages.bag_words import (
     moment_option,
     new_bag_options,
     qos_path_option,
+    refuse_bags,
     remap_rules,
     storage_option,
     take_choice,
@@ -109,6 +110,8 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
     """Record topics of the running graph into a folder, as MCAP or .db3 files. SPACE pauses, Ctrl-C ends it."""
     if topics and (options["everything"] or options["all_topics"]):
         raise UsageFault(all_or_some(topics))
+    if options["folder"] is None:
+        refuse_bags(topics)
     from graphflow.cli.messages import recording
 
     use_project()

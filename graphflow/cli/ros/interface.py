@@ -170,7 +170,8 @@ def package(name: str, only: str | None, as_json: bool) -> None:
         output.talk("to list the types of one: graphflow interface package PACKAGE")
         return
     if not registry.package_folders(name):
-        raise UsageFault(f"there is no interface package {name!r}{did_you_mean(name, registry.packages())}")
+        hint = registry.no_kinds(name) or did_you_mean(name, registry.packages())
+        raise UsageFault(f"there is no interface package {name!r}{hint}")
     kinds = (only,) if only else registry.KINDS
     output.listing((f"{name}/{kind}/{n}" for kind in kinds for n in registry.names_in(name, kind)), json=as_json)
 

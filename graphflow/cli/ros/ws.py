@@ -104,8 +104,9 @@ def _unbuilt_interfaces(package: Package) -> str:
 
     cmake = cmake_text(package)
     listed = re.findall(r"(?<![\w/}.-])((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b", cmake)
+    elsewhere = package.misplaced_interfaces.values()  # which have been reported
     for file in listed:
-        if not (package.folder / file).is_file():
+        if not (package.folder / file).is_file() and package.folder / file not in elsewhere:
             there = [f"{name}.{name.partition('/')[0]}" for name in _interfaces_of(package)]
             near = did_you_mean(file, [name for name in there if name not in listed])
             return f"{package.folder / 'CMakeLists.txt'}: {file} is listed and does not exist{near}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import dis
+import os
 import pkgutil
 import re
 import sys
@@ -20,6 +21,7 @@ from graphflow.msgs.registry import KINDS
 from graphflow.names import nearest
 from graphflow.rclpy.hints.frames import PATH, line_of, named, own
 from graphflow.runtime.mistakes.errors.name_errors import MODULES, unbound_local
+from graphflow.system import SITE
 
 
 def missing_name(error: BaseException, _frames: list[FrameType]) -> str:
@@ -173,9 +175,11 @@ def _unbound(name: str, frame: FrameType) -> str:
     if way := _in_rclpy(name, "rclpy"):
         return way
     line = imports(name) or MODULES.get(name, "")
-    for package in ("tf2_ros", "message_filters"):
+    if not line and os.path.isdir(os.path.join(SITE, name)):
+        line = f"import {name}"
+    for package in ("tf2_ros", "message_filters", "tf_transformations"):
         thing = vars(import_module(package)).get(name)
-        if not line and isinstance(thing, type) and thing.__module__.startswith(package):
+        if not line and isinstance(thing, (type, FunctionType)) and thing.__module__.startswith(package):
             line = f"from {package} import {name}"
     return f"write {line}" if line else ""
 

@@ -95,10 +95,15 @@ def test_for_some_time(machine: Machine, tmp_path: Path) -> None:
 @slow
 def test_the_name_of_a_bag_without_its_option(machine: Machine, tmp_path: Path) -> None:
     """It is taken for a topic, which is told beside the topic that is recorded; so is what to write."""
+    (tmp_path / "bags").mkdir()
+    text = machine.look("bag", "record", "./walk", "/chatter", cwd=tmp_path, code=2)
+    assert text.endswith("; if it is the bag to be written, write -o ./walk\n")
     talker = machine.start("run", "nodes.talker:Talker")
     talker.wait_for("Publishing")
     text = machine.run("bag", "record", "walk", "/chatter", "--duration", "2.5", cwd=tmp_path, code=0)
     assert "; if walk is the name of the bag, write -o walk" in text
+    text = machine.run("bag", "record", "bags/walk", "/chatter", "--duration", "2.5", cwd=tmp_path, code=0)
+    assert "; if bags/walk is the name of the bag, write -o bags/walk" in text
     assert "write -o" not in machine.run("bag", "record", "/walk", "--duration", "0.5", "-o", "b", cwd=tmp_path, code=1)
     assert talker.end(signal.SIGINT) == 0
 

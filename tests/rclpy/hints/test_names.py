@@ -102,6 +102,11 @@ LAMPS = [
     ),
     ("def tick(self):\n    import os\n    class Light(os):\n        pass", "os is a module, and no class"),
     ("def tick(self):\n    TransformListener(None, self)", "write from tf2_ros import TransformListener"),
+    ("def tick(self):\n    tf_transformations.quaternion_from_euler(0, 0, 1)", "write import tf_transformations"),
+    (
+        "def tick(self):\n    quaternion_from_euler(0, 0, 1)",
+        "write from tf_transformations import quaternion_from_euler",
+    ),
     (
         "def tick(self):\n    span = self.get_clock().now() - self.get_clock().now()\n    1.0 / span",
         "span is a Duration: write (span.nanoseconds / 1e9), its seconds",

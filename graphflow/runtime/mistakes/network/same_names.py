@@ -73,7 +73,7 @@ class Twins:
         named = sorted(map(self._owner, sorted(others)[:NAMED]))
         more = [f"{len(others) - NAMED} more"] if len(others) > NAMED else []
         where = " and ".join([*named, *more]) or "this process, too"
-        rename = "rename one: --ros-args -r __node:=NAME" if others else "rename one"
+        rename = "rename one: --ros-args -r __node:=NAME, or name='NAME' in a launch file" if others else "rename one"
         text = "another node is called %s, in %s: parameters, services and tools reach one of them by chance; %s"
         logger.warning(text, name, where, rename)
 

@@ -56,7 +56,9 @@ async def test_two_nodes_of_two_processes(graph: Graph, caplog: Caplog) -> None:
     await run_two(graph)
     first, second = sorted(told(caplog))
     assert first.startswith(f"another node is called /twin, in process {os.getpid()} (")
-    assert first.endswith("reach one of them by chance; rename one: --ros-args -r __node:=NAME")
+    assert first.endswith(
+        "reach one of them by chance; rename one: --ros-args -r __node:=NAME, or name='NAME' in a launch file"
+    )
     assert "in session " in second
     assert ", no graphflow process: parameters" in second
 
