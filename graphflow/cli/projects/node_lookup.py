@@ -12,6 +12,8 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from graphflow.cli import output
 from graphflow.cli.substitutes import no_package
 from graphflow.errors import GraphflowError, NoClass, NoModule, RunsWhenImported, UsageFault
@@ -188,6 +190,10 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
     having = owners(what, workspace)
     if having:
         return f"{what!r} is an executable of {' and of '.join(having)}: graphflow run {having[0]} {what}"
+    if (context := click.get_current_context(silent=True)) is not None:
+        top = context.find_root()
+        if isinstance(top.command, click.Group) and what in top.command.list_commands(top):
+            return f"{what!r} is a command of its own: graphflow {shlex.join([what, *words])}"
     if words and not words[0].startswith("-"):  # ROS's PKG EXE
         return _no_such_package(what, words[0], workspace)
     known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")} | {

@@ -114,12 +114,14 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
         raise UsageFault(f"Package {first!r} not found{f': {why}' if why else way}")
     files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0]) and file.suffix in _ENDINGS]
+    own = find_workspace(Path.cwd()).packages.get(first)
     if not found:
         known = _launch_files(files)
         begun = [name for name in known if name.startswith(f"{rest[0]}.")]
         near = f"; did you mean {begun[0]!r}?" if begun else did_you_mean(rest[0], known)
+        if own is not None and own.known_as(rest[0]) is not None:
+            near = f"; that is an executable: graphflow run {first} {rest[0]}"
         raise UsageFault(f"{first} has no file {rest[0]!r}{near}")
-    own = find_workspace(Path.cwd()).packages.get(first)
     if own is not None and (lacks := uninstalled_files(own)):
         output.talk(f"note: {lacks}")
     return str(found[0]), rest[1:]

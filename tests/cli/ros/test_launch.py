@@ -110,6 +110,10 @@ def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
     (folder / "resource" / "my_robot").touch()  # the mark of a package, which is no launch file
     told = machine.look("launch", "my_robot", "my_robot", cwd=tmp_path, code=2)
     assert "my_robot has no file 'my_robot'" in told
+    (folder / "scripts").mkdir()
+    (folder / "scripts" / "drive.py").touch()
+    told = machine.look("launch", "my_robot", "drive", cwd=tmp_path, code=2)
+    assert told == "error: my_robot has no file 'drive'; that is an executable: graphflow run my_robot drive\n"
     (folder / "launch" / "all.launch.py").write_text(PYTHON)
     (folder / "launch" / "round").symlink_to(folder)
     told = machine.look("launch", "-p", "my_robot", "all.launch.py", "loud:=2", cwd=tmp_path)

@@ -65,6 +65,7 @@ def test_a_name_that_is_taken_is_refused(machine: Machine) -> None:
         [
             (["nodes.talker.Talker"], 2, "write MODULE:CLASS, nodes.talker:Talker"),
             (["nodes.talkr:Talker"], 2, "there is no module 'nodes.talkr'"),
+            (["topic", "list"], 2, "'topic' is a command of its own: graphflow topic list"),
             (["nodes.talker:Talkr"], 2, "did you mean 'Talker'?"),
             (["nodes.talker:Talker", "-p", "rtae:=2.0"], 2, "did you mean 'rate'?"),
             (["nodes.talker:Talker", "-p", "rate:=fast"], 2, "parameter 'rate' is of type double, 'fast' is not"),
