@@ -19,7 +19,8 @@ from graphflow.typographic import option as meant_option
 
 logger = logging.getLogger("graphflow")
 
-_VALUED = ("-r", "--remap", "-p", "--param", "--params-file", "--log-level")
+_RULED = ("-r", "--remap", "-p", "--param")
+_VALUED = (*_RULED, "--params-file", "--log-level")
 _EXAMPLES = {
     **dict.fromkeys(("-r", "--remap"), "pose:=/turtle1/pose"),
     **dict.fromkeys(("-p", "--param"), "rate:=2.0"),
@@ -171,6 +172,8 @@ def is_number_or_truth(text: str) -> bool:
 
 _WITH_WORDS = ("--ros-args ", "-p ", "-r ", "--param ", "--remap ", "--params-file ")
 """Beginnings of arguments that are several words in one, as launch files may write them."""
+_EQUALS = re.compile(r"([\w/~]+)=(\S+)")
+"""A rule with the wrong sign."""
 
 
 def missed(arguments: Sequence[str]) -> str:
@@ -198,6 +201,10 @@ def missed(arguments: Sequence[str]) -> str:
             is_whole = before in _VALUED and not argument.startswith("___")
             way = f"; write --ros-args {before} {argument}" if is_whole else meant(argument)
             return f"{argument!r} means nothing to ROS before --ros-args{way}"
+        elif (
+            not in_ros and argument in _RULED and (rule := _EQUALS.fullmatch("".join(arguments[place + 1 : place + 2])))
+        ):
+            return f"if {rule[0]!r} is for ROS, write --ros-args {argument} {rule[1]}:={rule[2]}"
     return ""
 
 

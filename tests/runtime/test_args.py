@@ -163,6 +163,8 @@ def test_a_bare_rule_where_ros_knows_none() -> None:
             "--params-file x.yaml",
             "'--params-file' means nothing to ROS before --ros-args; write --ros-args --params-file x.yaml",
         ),
+        ("-r a=/b", "if 'a=/b' is for ROS, write --ros-args -r a:=/b"),
+        ("--param rate=2 -- -r", "if 'rate=2' is for ROS, write --ros-args --param rate:=2"),
         ("-p 8080 -r --params-file x.json --log-level debug", ""),
     ],
 )
