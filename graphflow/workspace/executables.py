@@ -22,7 +22,7 @@ from graphflow.workspace.node_classes import sole_class_in
 from graphflow.workspace.package_share import share_folder
 from graphflow.workspace.packages import Package, Workspace, bundled, find_workspace
 from graphflow.workspace.source_kinds import uses_ros
-from graphflow.workspace.unfound import why_no_package
+from graphflow.workspace.unfound import why_no_package, without_executables
 
 EXECUTABLES = {
     ("turtlesim", "turtlesim_node"): "nodes.turtlesim:TurtleSim",
@@ -156,7 +156,7 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
             text = f"{name} of the package {package!r} is C++, which only colcon builds; graphflow runs Python"
             raise NoExecutable(text, is_slip=False)
         if not own.executables:
-            text = f"the package {package!r} has no executable that graphflow can run{own.why_no_executable}"
+            text = f"the package {package!r} has no executable that graphflow can run{without_executables(own)}"
             raise NoExecutable(text, is_slip=bool(own.why_no_executable))
         near = own.missing_entry(name) or did_you_mean(name, own.executables)
         near = near or f"; there is {', '.join(own.executables)}"

@@ -8,6 +8,8 @@ from xml.parsers import expat
 
 from graphflow.reading import found_text
 
+_MISMATCHED = expat.errors.codes[expat.errors.XML_ERROR_TAG_MISMATCH]
+
 
 def fault_of(file: Path) -> str | None:
     """Return the place and the reason if a file is no XML; None if it is."""
@@ -17,12 +19,31 @@ def fault_of(file: Path) -> str | None:
         return f"{file}: {error.strerror}"
     if "<!ENTITY" in text:  # entities may expand to any length
         return None
+    parser = expat.ParserCreate()
+    is_open: list[tuple[str, int]] = []
+    parser.StartElementHandler = lambda name, _: is_open.append((name, parser.CurrentLineNumber))
+    parser.EndElementHandler = lambda _: is_open.pop()
     try:
-        expat.ParserCreate().Parse(text, True)
+        parser.Parse(text, True)
     except expat.ExpatError as error:
+        if error.code == _MISMATCHED and is_open:
+            name, line = _unclosed(text.splitlines()[error.lineno - 1][error.offset :], is_open)
+            return f"{file}:{line}: <{name}> is not closed, and ROS 2 does not build it: write </{name}>"
         open_tag = "; is </package> there at the end?" if "</package>" not in text else ""
         return f"{file}:{error.lineno}: {expat.ErrorString(error.code)}: ROS 2 does not build it{open_tag}"
     return None
+
+
+def _unclosed(end: str, is_open: list[tuple[str, int]]) -> tuple[str, int]:
+    """Return the name and line of the element that an end tag should have closed.
+
+    Args:
+        end: The text that begins with the name in that tag.
+        is_open: The names and lines of the elements that are open, the outermost first.
+    """
+    name = end.partition(">")[0].strip()
+    around = next((place for place, (other, _) in reversed([*enumerate(is_open)]) if other == name), len(is_open) - 2)
+    return is_open[around + 1]
 
 
 def name_fault(folder: Path, name: str) -> str | None:

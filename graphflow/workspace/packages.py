@@ -203,7 +203,7 @@ class Package:
         if not module.is_file() or not (self.folder / "setup.py").is_file():
             return ""
         line = f"{module.stem} = {self.name}.{module.stem}:main"
-        return f"; {module.name} is there: add '{line}' to the console_scripts of {self.folder / 'setup.py'}"
+        return f"; {module.name} is there: add '{line}', to the console_scripts of {self.folder / 'setup.py'}"
 
     def copy_fault(self, executable: str) -> str | None:
         """Return the fault of an entry that is a copy of another but for its name, which is that of another module."""

@@ -141,7 +141,7 @@ class SetupFile:
         for file in sorted((self.file.parent / package).glob("*.py")):
             if re.search(r"^def main\(", lenient_text(file), re.MULTILINE):
                 line = f"{file.stem} = {package}.{file.stem}:main"
-                return [f"{self.file} names no executable: add '{line}' to its console_scripts"]
+                return [f"{self.file} names no executable: add '{line}', to its console_scripts"]
         return []
 
     def _twice(self) -> Iterator[tuple[int, str]]:

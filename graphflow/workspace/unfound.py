@@ -30,14 +30,23 @@ def why_no_package(name: str, workspace: Workspace) -> str | None:
         reason = _lack(found) if found.package is None else _renamed(found, name)
         if reason is not None:
             return reason
-    beside = workspace.root / name
-    if _source(workspace) != workspace.root and _is_package(beside):
-        source = _shown(_source(workspace))
-        return f"{_shown(beside)} lies beside {source}, where packages are looked for: mv {_shown(beside)} {source}"
+    source = _source(workspace)
+    beside = (source.parent if source.name == "src" else source) / name
+    if source.name == "src" and _is_package(beside):
+        there = _shown(source)
+        return f"{_shown(beside)} lies beside {there}, where packages are looked for: mv {_shown(beside)} {there}"
     around = outer_workspace(workspace)
     if around is not None and name in around.packages:
         return f"the package {name!r} is in {around.root}, around this workspace, {workspace.root}: cd {around.root}"
     return None
+
+
+def without_executables(package: Package) -> str:
+    """Return why a package has no executables, or else how it gets one, as the end of a message; or empty."""
+    setup = package.folder / "setup.py"
+    if package.why_no_executable or not setup.is_file():
+        return package.why_no_executable
+    return f"; write a module in {package.folder / package.name}, and name its function in console_scripts of {setup}"
 
 
 def owners(executable: str, workspace: Workspace) -> list[str]:
@@ -94,8 +103,9 @@ def inner_workspaces(workspace: Workspace) -> list[Path]:
     """Return the folders within a workspace that are workspaces themselves, as their packages lie in a `src`."""
     found: dict[Path, None] = {}
     for package in workspace.packages.values():
-        inside = package.folder.relative_to(_source(workspace))
-        found.update((_source(workspace) / above.parent, None) for above in inside.parents if above.name == "src")
+        inside = package.folder.relative_to(workspace.root)
+        inner = [workspace.root / above.parent for above in inside.parents if above.name == "src"]
+        found.update((folder, None) for folder in inner if folder != workspace.root)
     return [*found]
 
 
@@ -148,7 +158,7 @@ def _lack(found: Folder) -> str | None:
         return _unnamed(found.path / "package.xml", f"{shown}/package.xml", name)
     if "pyproject.toml" in found.files and any((found.path / folder).is_dir() for folder in ("nodes", "graphs")):
         command = f"graphflow pkg create --build-type ament_python {name}"
-        made = f"a package is made, once {shown} has another name, by {command}"
+        made = f"a package is made, once {shown} has another name, by {command}, in {_shown(found.path.parent)}"
         return f"{shown} is a project of graphflow's, not a package of ROS 2's; to use it: cd {shown}; {made}"
     built = next((file for file in _BUILT if file in found.files), None)
     return None if built is None else f"{shown} has {built} but no package.xml; {_NEEDED.format(name=name)}"

@@ -12,10 +12,9 @@ from pathlib import Path
 import pytest
 
 from graphflow.errors import UsageFault
-from graphflow.msgs import registry
-from graphflow.rclpy.programs import _imported_in, _note_other, _warn_of_build_faults, _where_to_have, find_program
+from graphflow.rclpy.programs import _note_other, _warn_of_build_faults, find_program
 from graphflow.transport.rendezvous import free_endpoint
-from graphflow.workspace.packages import BUNDLED, find_workspace
+from graphflow.workspace.packages import BUNDLED
 from tests.cases import slow
 
 NODE = """
@@ -122,7 +121,7 @@ def test_what_a_package_has_not_is_told(workspace: Path) -> None:
     with pytest.raises(UsageFault, match="'lamp' has no executable 'lmap'; did you mean 'lamp'"):
         find_program("lamp", ["lmap"], workspace)
     (workspace / "src" / "lamp" / "lamp" / "listener.py").touch()
-    line = r"listener\.py is there: add 'listener = lamp\.listener:main' to the console_scripts of .*/lamp/setup\.py"
+    line = r"listener\.py is there: add 'listener = lamp\.listener:main', to the console_scripts of .*/lamp/setup\.py"
     with pytest.raises(UsageFault, match=line):
         find_program("lamp", ["listener"], workspace)
     (workspace / "src" / "lamp" / "launch").mkdir()
@@ -479,43 +478,3 @@ def test_a_thread_that_spins_outlives_the_main_thread() -> None:
     )
     last = "Exception in thread spinner:\nrclpy.executors.ExternalShutdownException\n"
     assert (ended.stdout, ended.stderr, ended.returncode) == ("alone True\n", last, 0)
-
-
-@pytest.mark.parametrize(
-    ("module", "sentence"),
-    [
-        ("lamp.srv", "lamp has no .srv file; they are in lamp_interfaces: from lamp_interfaces.srv import ..."),
-        ("lamp_interfaces.action", "{}/srv/Shine.action must be {}/action/Shine.action"),
-        ("lamp.action", "lamp has no .action file: "),
-    ],
-)
-def test_definitions_of_another_package_or_folder(tmp_path: Path, module: str, sentence: str) -> None:
-    """An import of what is not there is answered with where it is, or has to be."""
-    for name in ("lamp", "lamp_interfaces"):
-        (tmp_path / "src" / name).mkdir(parents=True)
-        (tmp_path / "src" / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
-    folder = tmp_path / "src/lamp_interfaces"
-    (folder / "srv").mkdir()
-    (folder / "srv/SetLight.srv").write_text("---\n")
-    (folder / "srv/Shine.action").write_text("---\n---\n")
-    assert _where_to_have(module, find_workspace(tmp_path)).startswith(sentence.format(folder, folder))
-
-
-def test_a_type_that_another_package_of_the_workspace_has(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The import to write has its name."""
-    for name in ("lamp", "lamp_kinds"):
-        (tmp_path / "src" / name).mkdir(parents=True)
-        (tmp_path / "src" / name / "package.xml").write_text(f"<package><name>{name}</name></package>")
-    (tmp_path / "src/lamp_kinds/srv").mkdir()
-    (tmp_path / "src/lamp_kinds/srv/SetLight.srv").write_text("---\n")
-    monkeypatch.setattr(registry, "_packages", {"lamp_kinds": tmp_path / "src/lamp_kinds"})
-    program = tmp_path / "program.py"
-    program.write_text("import os\nfrom lamp_no_such.srv import SetLight, Other\n")
-    with pytest.raises(ModuleNotFoundError) as caught:
-        exec(compile(program.read_text(), str(program), "exec"), {})
-    wanted = _imported_in(caught.value)
-    assert wanted == "SetLight"
-    right = "SetLight is in lamp_kinds.srv: from lamp_kinds.srv import SetLight"
-    assert _where_to_have("lamp.srv", find_workspace(tmp_path), wanted) == right
-    own = "SetLight is in lamp_kinds.srv: from lamp_kinds.srv import SetLight"
-    assert _where_to_have("lamp_kinds.msg", find_workspace(tmp_path), wanted) == own

@@ -18,7 +18,19 @@ from graphflow.workspace.manifest import fault_of, name_fault
             "<package>\n<name>a</name>\n",
             ":3: no element found: ROS 2 does not build it; is </package> there at the end?",
         ),
-        ("<package>\n<name>a</nam>\n</package>", ":2: mismatched tag: ROS 2 does not build it"),
+        (
+            "<package>\n<name>a</nam>\n</package>",
+            ":2: <name> is not closed, and ROS 2 does not build it: write </name>",
+        ),
+        (
+            "<package>\n<depend>a<depend>\n<depend>b</depend>\n</package>",
+            ":2: <depend> is not closed, and ROS 2 does not build it: write </depend>",
+        ),
+        (
+            "<package>\n<export>\n<build_type>a<build_type>\n</export>\n</package>",
+            ":3: <build_type> is not closed, and ROS 2 does not build it: write </build_type>",
+        ),
+        ("<package>\n</packag>", ":1: <package> is not closed, and ROS 2 does not build it: write </package>"),
     ],
 )
 def test_what_is_no_xml(tmp_path: Path, text: str, fault: str | None) -> None:

@@ -362,7 +362,7 @@ def test_a_package_whose_setup_py_names_no_executable(tmp_path: Path) -> None:
         lamp__node_dot_py="def main(): ...\n",
         setup_dot_py="setup(name='lamp', entry_points={'console_scripts': []})",
     )
-    line = f"{folder / 'setup.py'} names no executable: add 'node = lamp.node:main' to its console_scripts"
+    line = f"{folder / 'setup.py'} names no executable: add 'node = lamp.node:main', to its console_scripts"
     assert find_workspace(tmp_path / "ws").packages["lamp"].why_no_executable == f"; {line}"
     (folder / "setup.py").write_text("setup(name='lamp', entry_points={'console_scripts': names()})")
     assert find_workspace(tmp_path / "ws").packages["lamp"].why_no_executable == ""
@@ -482,6 +482,6 @@ def test_a_module_that_no_entry_names(tmp_path: Path) -> None:
     folder = package(tmp_path / "a", "a", setup_dot_py=setup, a__arm_dot_py="def main(): ...", a__leg_dot_py="")
     found = find_workspace(tmp_path).packages["a"]
     assert found.missing_entry("leg") == (
-        f"; leg.py is there: add 'leg = a.leg:main' to the console_scripts of {folder}/setup.py"
+        f"; leg.py is there: add 'leg = a.leg:main', to the console_scripts of {folder}/setup.py"
     )
     assert found.missing_entry("head") == ""

@@ -16,6 +16,7 @@ from graphflow.workspace.unfound import (
     starts_of,
     uninstalled_files,
     why_no_package,
+    without_executables,
 )
 
 SETUP = "from setuptools import setup\nsetup(entry_points={'console_scripts': ['shine = lamp.node:main']})\n"
@@ -174,6 +175,25 @@ def test_a_package_beside_the_others(workspace: Workspace) -> None:
     write(workspace.root / "new", package_xml=manifest("new"))
     said = why_no_package("new", workspace)
     assert said == "new lies beside src, where packages are looked for: mv new src"
+
+
+def test_a_package_beside_an_empty_src(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """From within `src`, too, it is told where it belongs; it is no workspace within another."""
+    (tmp_path / "src").mkdir()
+    folder = write(tmp_path / "lamp", package_xml=manifest("lamp"))
+    assert inner_workspaces(find_workspace(tmp_path)) == []
+    monkeypatch.chdir(tmp_path / "src")
+    said = why_no_package("lamp", find_workspace(tmp_path / "src"))
+    assert said == f"{folder} lies beside {tmp_path}/src, where packages are looked for: mv {folder} {tmp_path}/src"
+
+
+def test_a_package_without_executables(workspace: Workspace) -> None:
+    """How it gets one is told."""
+    folder = write(workspace.root / "src" / "empty", package_xml=manifest("empty"), setup_py="")
+    package = find_workspace(workspace.root).packages["empty"]
+    assert without_executables(package) == (
+        f"; write a module in {folder}/empty, and name its function in console_scripts of {folder}/setup.py"
+    )
 
 
 def test_nothing_of_that_name(workspace: Workspace) -> None:

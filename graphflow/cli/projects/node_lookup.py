@@ -34,7 +34,7 @@ from graphflow.workspace.node_classes import node_classes_in
 from graphflow.workspace.packages import Workspace, find_workspace
 from graphflow.workspace.project import demos_root, module_of, project_root, shown
 from graphflow.workspace.source_kinds import uses_ros
-from graphflow.workspace.unfound import owners, why_no_package
+from graphflow.workspace.unfound import owners, why_no_package, without_executables
 
 FOLDERS = 1000
 """Most folders that are searched for a missing file."""
@@ -172,7 +172,7 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
         compiled = sorted(packages[what].compiled)
         verb = "is" if len(compiled) == 1 else "are"
         why = f"; {', '.join(compiled)} {verb} C++, which only colcon builds" if compiled else ""
-        why += packages[what].why_no_executable
+        why += packages[what].why_no_executable if compiled else without_executables(packages[what])
         return f"the package {what!r} has no executable that graphflow can run{why}"
     if words and (program := _program_of(what, words[0], root)):
         return f"{what} is a project of graphflow's; to run its program for rclpy: graphflow run {program}"

@@ -90,6 +90,7 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     """
     from graphflow.cli.substitutes import no_package
     from graphflow.workspace.executables import SLIP, of_ros, package_share
+    from graphflow.workspace.manifest import fault_of
     from graphflow.workspace.packages import find_workspace
     from graphflow.workspace.project import demos_root, project_root
     from graphflow.workspace.unfound import uninstalled_files, why_no_package
@@ -122,8 +123,9 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
         if own is not None and own.known_as(rest[0]) is not None:
             near = f"; that is an executable: graphflow run {first} {rest[0]}"
         raise UsageFault(f"{first} has no file {rest[0]!r}{near}")
-    if own is not None and (lacks := uninstalled_files(own)):
-        output.talk(f"note: {lacks}")
+    if own is not None:
+        for fault in filter(None, (fault_of(own.folder / "package.xml"), uninstalled_files(own))):
+            output.talk(f"note: {fault}")
     return str(found[0]), rest[1:]
 
 

@@ -64,6 +64,14 @@ def _text(error: BaseException, _: list[FrameType]) -> str:
     return ""
 
 
+def _missing_module(error: BaseException, frames: list[FrameType]) -> str:
+    if not isinstance(error, ModuleNotFoundError):
+        return ""
+    from graphflow.rclpy.hints.missing_modules import missing_module  # with the workspace, which few errors need
+
+    return missing_module(error, frames)
+
+
 def _stamp(error: BaseException, frames: list[FrameType]) -> str:
     """Show how to convert a message's stamp where it is used in arithmetic."""
     users = own(frames)
@@ -186,6 +194,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     _of_publisher,
     _attribute,
     missing_name,
+    _missing_module,
     unknown_name,
     early_result,
     unset,

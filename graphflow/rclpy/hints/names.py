@@ -14,7 +14,7 @@ from importlib import import_module
 from types import CodeType, FrameType, FunctionType, MethodType, ModuleType
 
 from graphflow.analysis.syntax import last_name, nodes_in, syntax_of
-from graphflow.analysis.user_code import is_users, short_place
+from graphflow.analysis.user_code import is_ours, is_users, short_place
 from graphflow.msgs import registry
 from graphflow.msgs.homes import homes, imports
 from graphflow.msgs.registry import KINDS
@@ -36,7 +36,7 @@ def missing_name(error: BaseException, _frames: list[FrameType]) -> str:
 def _where(name: str, module: str) -> str:
     """Describe the location of a name that a module lacks."""
     package, _, kind = module.partition(".")
-    if kind in KINDS:
+    if kind in KINDS and package != "rclpy":  # which has a module `action`
         if " must be " in (wrong := registry.misplaced(package, name)):
             return wrong.removeprefix("; ")
         known = sorted(homes(name), key=lambda where: not where.startswith(f"{package}."))
@@ -49,7 +49,12 @@ def _where(name: str, module: str) -> str:
             return f"write import {module}.{name}"
         kinds = [kind for kind in KINDS if name in registry.names_in(package, kind)]
         return f"{name} is in {package}.{kinds[0]}: from {package}.{kinds[0]} import {name}" if kinds else ""
-    return _in_rclpy(name, module) if package == "rclpy" else ""
+    way = _in_rclpy(name, module) if package == "rclpy" else ""
+    if way or module not in sys.modules or not is_ours(str(sys.modules[module].__file__)):
+        return way
+    public = [word for word in dir(sys.modules[module]) if not word.startswith("_")]
+    near = nearest(name, [*public, *getattr(sys.modules[module], "__all__", ())])
+    return f"did you mean {near!r}?" if near is not None else ""
 
 
 def _of_callback(path: str, name: str, frame: FrameType) -> str:

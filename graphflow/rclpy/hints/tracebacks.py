@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import signal
 import sys
 import threading
@@ -20,6 +21,17 @@ def install() -> None:
     if sys.excepthook is sys.__excepthook__:
         sys.excepthook = show
     install_in_threads()
+
+
+def advise_at_exit() -> None:
+    """Print the next step at exit for an error before `install`, as of an import, which Python prints as it is."""
+    atexit.register(_at_exit)
+
+
+def _at_exit() -> None:
+    error = getattr(sys, "last_value", None)
+    if error is not None and sys.excepthook is sys.__excepthook__ and (found := lookup.hint(error)):
+        sys.stderr.write(f"note: {found}\n")
 
 
 def install_in_threads() -> None:

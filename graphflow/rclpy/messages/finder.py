@@ -76,6 +76,7 @@ class MessagePackages:
             except (UnknownInterface, InterfaceError) as error:
                 if name in names:  # it is defined, and something in it is wrong, or not there
                     raise ImportError(f"{package}/{kind}/{name}: {error}", name=module.__name__) from None
+                _show_next_steps()
                 raise AttributeError(str(error)) from None
             setattr(module, name, cls)
             return cls
@@ -84,11 +85,19 @@ class MessagePackages:
         if len(rest) > 1:  # rosidl's modules of one class: geometry_msgs.msg._twist
             names = [name for name in names if f"_{classes.snake(name)}" == rest[1]]
         if not names:
+            _show_next_steps()
             raise ModuleNotFoundError(f"No module named {module.__name__!r}", name=module.__name__)
         module.__doc__ = f"The {kind} interfaces of the package {package}."
         module.__dict__["__all__"] = names
         module.__getattr__ = make  # type: ignore[method-assign]
         module.__dir__ = lambda: names  # type: ignore[method-assign]
+
+
+def _show_next_steps() -> None:
+    """Show the next step of an import's error, also in a program that has not imported rclpy yet."""
+    from graphflow.rclpy.hints import tracebacks
+
+    tracebacks.install()
 
 
 class OwnPackages:

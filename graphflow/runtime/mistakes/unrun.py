@@ -58,8 +58,7 @@ def _at_exit() -> None:
     error = getattr(sys, "last_value", None)
     if isinstance(error, AttributeError) and error.name is not None and (better := better_text(error)):
         sys.stderr.write(f"{place_in(error)}: {better}\n")  # Python has printed the error itself
-    # Errors of programs for rclpy have had their remarks.
-    if isinstance(error, NameError) or (isinstance(error, TypeError) and "rclpy" not in sys.modules):
+    if isinstance(error, (NameError, TypeError)) and "rclpy" not in sys.modules:  # whose programs have had theirs
         from graphflow.runtime.mistakes.errors.python_errors import remark_on  # most programs never need it
 
         if (way := remark_on(error)) and way not in getattr(error, "__notes__", ()):

@@ -76,7 +76,7 @@ def _hidden(module: ModuleType) -> str:
     """Return a hint if a file of the project has the name of a module that was imported from elsewhere; else empty."""
     if module.__file__ is None or any(Path(module.__file__).is_relative_to(root) for root in _roots):
         return ""
-    for root in _roots:
+    for root in (*_roots, str(Path.cwd())):
         file = Path(root, *module.__name__.split(".")).with_suffix(".py")
         if file.is_file():
             return f"; {file.name} here is hidden by {module.__file__}: rename it, as in my_{file.name}"
@@ -198,12 +198,15 @@ def _bundled(wanted: str) -> str:
 def nearest_module(module: str, root: str) -> str | None:
     """Return the full name of the project's module whose name is most like that of a missing one.
 
-    Modules of the same package come first; then those of the project's folder and its subfolders.
+    One of that very name in a subfolder comes first, then those of the same package, of the folder and its subfolders.
     """
     parent, _, last = module.rpartition(".")
     beside = getattr(sys.modules.get(parent), "__path__", [root] if not parent else [])
     folders = islice((f for f in sorted(Path(root).iterdir()) if f.name.isidentifier() and f.is_dir()), _FOLDERS_BOUND)
     inner = [(folder.name, [str(folder)]) for folder in folders]
+    same = next((f"{at}.{last}" for at, paths in inner if last in {m.name for m in iter_modules(paths)}), None)
+    if same is not None:
+        return same
     for places in ([(parent, beside)], [("", [root]), *inner]):
         known = {m.name: f"{at}.{m.name}".lstrip(".") for at, paths in reversed(places) for m in iter_modules(paths)}
         near = nearest(last, known)
@@ -232,6 +235,8 @@ def _where(error: BaseException) -> str:
         text = f"graphflow has no {found[1]}; {_instead_of(found[1])}".removesuffix("; ")
     elif missing == "rclpy":
         text += '; write `from graphflow import Node`: the page "coming from ROS 2" has each word of rclpy'
+    elif (near := nearest(missing, ["rclpy", "graphflow"], cutoff=0.75)) is not None:
+        text += f"; did you mean {near!r}?"
     elif missing in ("rospy", "roscpp", "roslib"):
         text += f"; {missing} is ROS 1's: write `from graphflow import Node`, or ROS 2's import rclpy"
     elif remark := remark_on(error) or _advise_on_sibling(error, place):

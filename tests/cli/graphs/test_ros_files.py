@@ -74,7 +74,7 @@ def test_a_setup_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     told = capsys.readouterr()
     assert f"{file}:2: on is lamp.on:main, and there is no " in told.err
     assert told.out == f"{file}: executables: go, on, 1 problem\n"
-    file.write_text(SETUP.format("'go = lamp.go:main'"))
+    file.write_text(SETUP.format("'go = lamp.go:main',"))
     assert check_setup(file, as_json=True) == exits.OK
     assert json.loads(capsys.readouterr().out) == {"problems": [], "remarks": [], "deadlocks": []}
     file.write_text(SETUP.format(""))

@@ -51,6 +51,7 @@ __all__ = [
     "try_shutdown",
 ]
 
+tracebacks.advise_at_exit()
 _global_executor: Executor | None = None
 
 

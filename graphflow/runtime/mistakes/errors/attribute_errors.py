@@ -8,6 +8,7 @@ from __future__ import annotations
 import dis
 import inspect
 import linecache
+import logging
 import re
 from collections.abc import Collection
 from types import CodeType, FrameType
@@ -22,6 +23,7 @@ from graphflow.runtime.mistakes.rclpy_words import AttributeHints, hint_of, text
 _NO_ATTRIBUTE = re.compile(r"'(?P<kind>\w+)' object has no attribute '(?P<name>\w+)'(?P<more> and no __dict__ .*)?")
 _PATH = re.compile(r"[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)+")
 """A dotted name."""
+_NO_PUBLISHER = "it is a logger, with info(...), warning(...) and error(...); self.log is that of the node"
 _AXES = ("x", "y", "z")
 
 
@@ -53,8 +55,11 @@ def better_text(error: AttributeError) -> str:
         return no_field(type(thing), name)
     if way := _of_transform(thing, name, error):
         return f"{error}; {way}"
-    if not isinstance(thing, AttributeHints):
-        return ""
+    if isinstance(thing, logging.Logger):
+        return f"{error}; {_near(thing, name) or _NO_PUBLISHER}"
+    if not isinstance(thing, AttributeHints):  # Python has its suggestion only where it prints the error itself
+        near = _near(type(thing), name)
+        return f"{error}; {near}" if near else ""
     if text := text_instead(thing, name):
         return text
     running = {part.tb_frame.f_code for part in parts_of(error.__traceback__)}
