@@ -9,6 +9,7 @@ import pkgutil
 import re
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from enum import EnumType
 from importlib import import_module
 from types import CodeType, FrameType, FunctionType, MethodType, ModuleType
@@ -182,10 +183,11 @@ def _unbound(name: str, frame: FrameType) -> str:
     line = imports(name) or MODULES.get(name, "")
     if not line and os.path.isdir(os.path.join(SITE, name)):
         line = f"import {name}"
-    for package in ("tf2_ros", "message_filters", "tf_transformations"):
-        thing = vars(import_module(package)).get(name)
-        if not line and isinstance(thing, (type, FunctionType)) and thing.__module__.startswith(package):
-            line = f"from {package} import {name}"
+    for package in ("tf2_ros", "message_filters", "tf_transformations") if not line else ():
+        with suppress(ImportError):  # the last one needs another package
+            thing = vars(import_module(package)).get(name)
+            if isinstance(thing, (type, FunctionType)) and thing.__module__.startswith(package):
+                line = f"from {package} import {name}"
     return f"write {line}" if line else ""
 
 

@@ -17,7 +17,7 @@ def inverted_waits(module: ast.AST) -> Iterator[tuple[int, str]]:
         match node:
             case ast.While(test=ast.Call(func=function) as test, body=body) if last_name(function) in _WAITS:
                 if all(map(_only_tells, body)):
-                    text = f"this loop goes on for as long as {ast.unparse(function)} finds one"
+                    text = f"this loop goes on for as long as {ast.unparse(function)} finds a server"
                     yield node.lineno, f"{text}; write while not {ast.unparse(test)}:"
 
 

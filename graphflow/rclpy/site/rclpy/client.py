@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable
 from functools import partial
@@ -13,6 +14,7 @@ from graphflow.rclpy.wake import Wake
 from graphflow.runtime.endpoints.service_events import ServiceEvent
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.handle import Handle
+from rclpy.impl.mistakes.inverted_waits import Successes
 from rclpy.impl.reexports import passed_on
 from rclpy.impl.service_end import ServiceEnd
 from rclpy.task import Future
@@ -51,6 +53,7 @@ class Client(ServiceEnd):
         """The futures of calls that have no answer yet, by number. graphflow's own."""
         self._lock = threading.Lock()
         self.server_wakes = changed
+        self._successes = Successes()
         """The wake-ups of threads that wait for a server. graphflow's own."""
 
     def call(self, request: object, timeout_sec: float | None = None) -> Any:
@@ -134,7 +137,10 @@ class Client(ServiceEnd):
         finally:
             self._life.forget(wake)
             self.server_wakes.pop(wake, None)
-        return self.service_is_ready()
+        is_there = self.service_is_ready()
+        if is_there:
+            self._successes.note(sys._getframe(1))
+        return is_there
 
     def has_work(self) -> bool:
         return bool(self.endpoint.inbox.items)

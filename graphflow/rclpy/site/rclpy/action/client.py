@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 import uuid
 from collections.abc import Callable
 from functools import partial
@@ -261,10 +262,15 @@ class ActionClient(Waitable):
         life.on_end(wake)
         limit = None if timeout_sec is None or timeout_sec < 0 else timeout_sec
         try:
-            return wake.wait_until(lambda: not life.is_ok or self.server_is_ready(), limit) and self.server_is_ready()
+            is_there = (
+                wake.wait_until(lambda: not life.is_ok or self.server_is_ready(), limit) and self.server_is_ready()
+            )
         finally:
             life.forget(wake)
             self._graphflow.server_wakes.pop(wake, None)
+        if is_there:
+            self._graphflow.successes.note(sys._getframe(1))
+        return is_there
 
     def destroy(self) -> None:
         """Withdraw the client. Goals continue."""

@@ -25,6 +25,7 @@ from graphflow.runtime.endpoints.threaded import (
     ThreadedSubscription,
 )
 from rclpy.handle import sending
+from rclpy.impl.mistakes.inverted_waits import Successes
 from rclpy.impl.nodes import internals_of
 from rclpy.qos import QoSProfile, to_graphflow
 from rclpy.task import Future
@@ -66,6 +67,7 @@ class ActionClientInternals(ActionInternals):
         self.waiting: dict[tuple[ThreadedClient, int], tuple[Future, Callable[[bytes], object]]] = {}
         """Pending calls by client and number: the future, and the conversion of the response."""
         self.server_wakes: dict[Wake, None] = {}
+        self.successes = Successes()
         """The wake-ups of threads that wait for a server."""
         self.handles: dict[bytes, ClientGoalHandle] = {}
         """The accepted goals that have not ended, by id."""

@@ -272,8 +272,8 @@ class ParameterMethods:
                 self._graphflow_warn_of_no_effect(former)
             return result
         except Exception as error:  # a user's check may raise anything: the client gets its text, the log its place
-            if place := place_in(error):
-                note = hint(error)
-                text = f"{Path(place).name}: {type(error).__name__}: {error}{note and '; '}{note}"
+            place, note = place_in(error), hint(error)
+            text = f"{Path(place).name}: {type(error).__name__}: {error}{note and '; '}{note}" if place else str(error)
+            if place or isinstance(error, AttributeError):  # the others are the client's
                 self._graphflow_as_node.get_logger().error(f"parameters were not set: {text}")
             return SetParametersResult(successful=False, reason=str(error))

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 Kind = Parameter.Type
 TRUTHS = {"on": True, "yes": True, "y": True, "off": False, "no": False, "n": False}
 """Words that ROS 2 reads as booleans in parameter files, and YAML 1.2 does not."""
+RESULT = "SetParametersResult(successful=True), of rcl_interfaces.msg"
+"""What a callback of `add_on_set_parameters_callback` returns."""
 RELATIVE_TOLERANCE = 1e-6
 """The greatest relative distance of a value from a step."""
 
@@ -292,7 +294,7 @@ class NodeParameters:
         for check in list(self.checks):
             result = check(parameters)
             if not hasattr(result, "successful"):
-                raise AttributeError(must_return(check, "SetParametersResult(successful=True)", result))
+                raise AttributeError(must_return(check, RESULT, result))
             if not result.successful:
                 return SetParametersResult(successful=result.successful, reason=result.reason)
         return SetParametersResult(successful=True)

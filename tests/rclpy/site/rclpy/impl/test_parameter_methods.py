@@ -141,3 +141,9 @@ def test_callbacks_that_raise_for_others(node: Node, spin: Spinner, caplog: pyte
         f"parameters were not set: test_parameter_methods.py:{line}: AttributeError: {reason}; that is a list of "
         "parameters: for parameter in parameters, and parameter.name"
     ]
+    caplog.clear()
+    node.remove_on_set_parameters_callback(check)
+    node.add_on_set_parameters_callback(lambda parameters: True)
+    reason = ask(Parameter("n", value=6))
+    assert reason.endswith("must return SetParametersResult(successful=True), of rcl_interfaces.msg, and returned bool")
+    assert [record.getMessage() for record in caplog.records] == [f"parameters were not set: {reason}"]

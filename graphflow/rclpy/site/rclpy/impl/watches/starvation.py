@@ -30,6 +30,7 @@ from rclpy.impl.deadlock.groups import executors, is_exclusive, threads_of
 from rclpy.impl.deadlock.stacks import Level, Stack, stacks
 from rclpy.impl.entities import arrived, entities_of, full_name, goal_of, name_of, node_of_goal, role_of
 from rclpy.impl.failing import failure
+from rclpy.impl.mistakes import inverted_waits
 from rclpy.impl.nodes import internals_of, nodes_of
 from rclpy.impl.spinning import Run
 from rclpy.timer import Timer
@@ -179,6 +180,8 @@ class HeldUp:
         is_begun = not any(_is_init(frame, node) for frame in level.frames)
         thread = f"thread {stack.thread.name}"
         if (is_begun and not kept) or self._is_reported(stack.thread, "t", thread) or self.was_reported(name):
+            return None
+        if any(inverted_waits.is_told(frame.f_code) for frame in level.frames):
             return None
         for_long, place = f"for {seconds:.1f} s", place_of(level, node)
         if not is_begun:
