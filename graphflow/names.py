@@ -22,6 +22,8 @@ _NODE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*\Z")
 _SUBSTITUTION = re.compile(r"\{([^}]*)\}")
 MAX_LENGTH = 255
 """Length limit in characters of a full name, as in rmw."""
+EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
+"""Topics that many nodes have and that need no counterpart."""
 CHOICES_BOUND = 5_000
 """Number of choices that a word is compared with: others may announce any number of names, and each takes 10 us."""
 
@@ -160,6 +162,11 @@ def split(full_name: str) -> tuple[str, str]:
 def is_hidden(name: str) -> bool:
     """Return whether a part of a name begins with an underscore; listings omit such names."""
     return any(part.startswith("_") for part in name.split("/"))
+
+
+def is_everybodys(topic: str) -> bool:
+    """Whether a topic belongs to ROS or graphflow, so that users do not write its name."""
+    return topic in EVERYBODYS or is_hidden(topic)
 
 
 def expand(name: str, namespace: str, node: str) -> str:

@@ -104,7 +104,8 @@ class View:
         if not nodes or self.cache.endpoints(Kind.PUBLISHER, topic):
             return ""
         verb = "subscribes" if len(nodes) == 1 else "subscribe"
-        return f"; {' and '.join(nodes[:TAKEN_SHOWN])} {verb} to it, and nothing publishes it{self._stopped()}"
+        why = self.cache.absolute(topic) or self._stopped()
+        return f"; {' and '.join(nodes[:TAKEN_SHOWN])} {verb} to it, and nothing publishes it{why}"
 
     def service_types(self, name: str, wanted: str = "") -> list[str]:
         """Return the types of an offered service: several, if nodes announce different ones.

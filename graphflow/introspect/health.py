@@ -13,8 +13,8 @@ from graphflow.introspect.graph_view import View
 from graphflow.introspect.numbers import REPLY_BOUND
 from graphflow.machines.cache import ACTION_SEND_GOAL, GraphCache
 from graphflow.machines.matching import shared
-from graphflow.machines.near_topics import EVERYBODYS, is_misspelt
-from graphflow.names import is_hidden, nearest
+from graphflow.machines.near_topics import is_misspelt
+from graphflow.names import EVERYBODYS, is_hidden, nearest
 from graphflow.system import host_name
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.process import ProcessToken

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from graphflow.names import did_you_mean, is_hidden, nearest
+from graphflow.names import did_you_mean, is_everybodys, is_hidden, nearest, without_slash
 from graphflow.wire.liveliness import Entity, Kind, parse_token
 
 ACTION_FEEDBACK = "/_action/feedback"
@@ -154,10 +154,19 @@ class GraphCache:
         if name in self.nodes():
             return "; it is a node"
         known = list(known)
+        if absolute := self.absolute(name):
+            return absolute
         if inside := [other for other in known if other.startswith(f"{name.rstrip('/')}/") and name != "/"]:
             more = f" and {len(inside) - _SHOWN} more" if len(inside) > _SHOWN else ""
             return f"; it is a namespace, with {', '.join(inside[:_SHOWN])}{more}"
         return did_you_mean(name, known, hidden)
+
+    def absolute(self, name: str) -> str:
+        """Return the end of a message about an unknown name that a node has without its namespace; empty for others."""
+        for entity in self:
+            if entity.namespace and name == entity.namespace + entity.name and not is_everybodys(entity.name):
+                return f"; {entity.node_name} has {entity.name}, and needs {without_slash(entity.name)}"
+        return ""
 
     def service_of_type(self, name: str, type_name: str) -> str:
         """Return the end of a message that no node offers a service of a type: the services that may be meant."""
@@ -172,7 +181,7 @@ class GraphCache:
     def unpublished(self, topic: str) -> str:
         """Return a message that a topic has no publisher, with a suggestion unless it has subscriptions."""
         if self.endpoints(Kind.SUBSCRIPTION, topic):
-            return f"topic [{topic}] has subscriptions, and no publisher yet"
+            return f"topic [{topic}] has subscriptions, and no publisher yet{self.absolute(topic)}"
         return f"topic [{topic}] does not appear to be published yet{self.instead(topic, self.topics())}"
 
     def without_events(self, service: str) -> str:

@@ -6,11 +6,9 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from itertools import islice
 
 from graphflow.machines.matching import COUNTERPARTS
-from graphflow.names import MAX_LENGTH, is_hidden, nearest, without_slash
+from graphflow.names import MAX_LENGTH, is_everybodys, is_hidden, nearest, without_slash
 from graphflow.wire.liveliness import Entity, Kind
 
-EVERYBODYS = ("/rosout", "/parameter_events", "/clock", "/tf", "/tf_static")
-"""Topics that many nodes have and that need no counterpart."""
 CUTOFF = 0.75
 """Least similarity (0 to 1) of two words of which one may be the other misspelt."""
 COMPARED = 500
@@ -32,11 +30,6 @@ def by_type(entities: Iterable[Entity], types: Container[str]) -> ByType:
         if len(entity.name) <= MAX_LENGTH and not is_everybodys(entity.name):
             found.setdefault((entity.kind, entity.type), []).append(entity)
     return found
-
-
-def is_everybodys(topic: str) -> bool:
-    """Whether a topic belongs to ROS or graphflow, so that users do not write its name."""
-    return topic in EVERYBODYS or is_hidden(topic)
 
 
 def did_you_mean_topic(own: Entity, there: ByType) -> str:

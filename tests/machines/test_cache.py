@@ -188,6 +188,18 @@ def test_a_name_of_another_kind() -> None:
     assert cache.instead("/arm", [f"/arm/n{i}" for i in range(5)]).endswith("/arm/n0, /arm/n1, /arm/n2 and 2 more")
 
 
+def test_a_name_without_the_namespace() -> None:
+    """Is told to a node that has a slash in front of it; those of ROS itself need none."""
+    log = endpoint(LISTENER, 4, Kind.PUBLISHER, "/rosout")
+    cache = cache_of(*GRAPH, log, endpoint(LISTENER, 5, Kind.SUBSCRIPTION, "/robot/scan"))
+    way = "and needs 'chatter': a slash in front keeps the namespace out"
+    assert cache.instead("/robot/chatter", ["/chatter"]) == f"; /robot/listener has /chatter, {way}"
+    assert cache.absolute("/robot/add").startswith("; /robot/listener has /add, and needs 'add'")
+    assert cache.unpublished("/robot/scan") == "topic [/robot/scan] has subscriptions, and no publisher yet"
+    for name in ("/robot/rosout", "/chatter", "/other/chatter", "/robot/listener/chatter"):
+        assert cache.absolute(name) == ""
+
+
 def test_topics_that_nobody_publishes() -> None:
     """One that somebody waits for is called as it should be; else the nearest that is published may be meant."""
     cache = GraphCache()

@@ -14,7 +14,7 @@ from graphflow.graph.checks.check import Interfaces, remarks_on_programs, resolv
 from graphflow.graph.checks.panes import odd_panes
 from graphflow.graph.plan import Plan, PlannedNode, PlannedStep, StepKind
 from graphflow.interface import EndpointKind, Interface, may_make
-from graphflow.names import Kind, nearest, split, without_slash
+from graphflow.names import EVERYBODYS, Kind, nearest, split, without_slash
 from graphflow.workspace.project import project_root, shown
 
 _OTHER_END: Mapping[EndpointKind, tuple[EndpointKind, str]] = {
@@ -45,8 +45,6 @@ _SHARED: Mapping[EndpointKind, str] = {
     "subscription": "subscribe to {}, and all obey each command",
 }
 """Effects of sharing commands, by the kind of endpoint."""
-_EVERYWHERE = ("/clock", "/rosout", "/parameter_events", "/tf", "/tf_static")
-"""Topics of tools and of every node."""
 
 
 class _End(NamedTuple):
@@ -187,7 +185,7 @@ def _of_steps(plan: Plan, ends: list[_End]) -> Iterator[tuple[str, Problem]]:
 
 def _of_wait(step: PlannedStep, plan: Plan, ends: list[_End]) -> Iterator[tuple[str, Problem]]:
     known = {node.name for node in plan.nodes} | {end.name for end in ends}
-    if step.target not in (*known, *_EVERYWHERE):
+    if step.target not in (*known, *EVERYBODYS):
         hint = _hint(_nearest(step.target, known))
         yield step.target, Problem(step.target_place, f"nothing in this graph is called {step.target}{hint}")
 
@@ -201,7 +199,7 @@ def _of_nodes(ends: list[_End], sure: set[str]) -> Iterator[tuple[str, Problem]]
     reported: set[str] = set()
     for end in sorted(ends, key=lambda end: (end.remapped_at is None, end.kind not in _NEEDS_ONE)):
         others = _others(end, ends)
-        if end.name in others or end.name in _EVERYWHERE:
+        if end.name in others or end.name in EVERYBODYS:
             continue
         topics = sure if end.kind in ("publisher", "subscription") else set[str]()
         if _within(end) in others | topics:
@@ -221,7 +219,7 @@ def _apart(ends: list[_End], reported: set[str]) -> Iterator[tuple[str, Problem]
     Args:
         reported: Names that are left out.
     """
-    alone = [e for e in ends if e.name not in _others(e, ends) and e.name not in (*reported, *_EVERYWHERE)]
+    alone = [e for e in ends if e.name not in _others(e, ends) and e.name not in (*reported, *EVERYBODYS)]
     for heard in alone:
         for sent in alone if heard.kind == "subscription" else ():
             is_alike = sent.given == heard.name or split(sent.given)[1] == split(heard.name)[1]

@@ -25,7 +25,9 @@ SLOW = 5.0
 """Seconds that a hook may take before it is reported."""
 _BEGINNINGS = ("on_start", "on_configure", "on_activate")
 """Hooks before which no handler runs."""
-_NO_HANDLERS = "no handler of this node runs until it returns: move a wait for them, or for a later node, into a @task"
+_NO_HANDLERS = (
+    "no handler of this node runs until it returns: move its loops, and waits for them or for later nodes, into a @task"
+)
 _ELSEWHERE = "long or repeated work belongs in on_start, a @timer or a @task"
 _NO_TRANSITION = "until then, the node can make no other transition"
 

@@ -13,8 +13,7 @@ from typing import Protocol
 
 from graphflow.errors import Place
 from graphflow.executor.clock import Clock
-from graphflow.machines.near_topics import is_everybodys
-from graphflow.names import is_hidden
+from graphflow.names import is_everybodys, is_hidden
 from graphflow.qos import Durability
 from graphflow.times import to_ns
 from graphflow.wire.liveliness import Entity

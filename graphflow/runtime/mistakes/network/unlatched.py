@@ -16,8 +16,7 @@ from typing import Protocol
 from graphflow.deadlock.protocols import ProcessContext
 from graphflow.errors import DecodeError
 from graphflow.executor.clock import Alarm
-from graphflow.machines.near_topics import is_everybodys
-from graphflow.names import is_hidden
+from graphflow.names import is_everybodys, is_hidden
 from graphflow.qos import INFINITE_NS, Durability, Qos
 from graphflow.times import to_ns
 from graphflow.transport.base import Closable

@@ -16,8 +16,8 @@ from graphflow.deadlock.protocols import ProcessContext
 from graphflow.executor.clock import Alarm
 from graphflow.machines.cache import ACTION_SEND_GOAL, GraphChange
 from graphflow.machines.matching import COUNTERPARTS
-from graphflow.machines.near_topics import by_type, did_you_mean_topic, is_everybodys, of_other_kind
-from graphflow.names import is_hidden
+from graphflow.machines.near_topics import by_type, did_you_mean_topic, of_other_kind
+from graphflow.names import is_everybodys, is_hidden
 from graphflow.qos import Durability
 from graphflow.runtime.mistakes.network.other_domains import look_elsewhere
 from graphflow.times import to_ns

@@ -22,9 +22,18 @@ def test_a_spin_without_the_executor() -> None:
     assert found(f"{MADE}rclpy.spin(node)\nexecutor.shutdown()") == [(4, told)]
 
 
+def test_an_executor_without_nodes() -> None:
+    """Its spin is told."""
+    body = "executor = MultiThreadedExecutor(num_threads=2)\nexecutor.spin()\nexecutor.shutdown()"
+    assert found(body) == [(3, "executor has no node: write executor.add_node(...) before it spins")]
+
+
 @pytest.mark.parametrize(
     "body",
     [
+        "executor = MultiThreadedExecutor()\nadd_all(executor)\nexecutor.spin()",
+        "executor = MultiThreadedExecutor()\nnode.executor = executor\nexecutor.spin()",
+        "executor = MultiThreadedExecutor()\nexecutor.create_task(work)\nexecutor.spin()",
         f"{MADE}executor.spin()\nrclpy.spin(node)",
         f"{MADE}rclpy.spin(node, executor)",
         f"{MADE}rclpy.spin(node, executor=executor)",

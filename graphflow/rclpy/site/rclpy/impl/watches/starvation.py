@@ -191,8 +191,10 @@ class HeldUp:
             )
         else:
             who = "the program" if stack.thread is threading.main_thread() else thread
-            is_spinning = stack.spins or any(other.spins for other in stacks())
-            way = _ONE_EXECUTOR if is_spinning else _way_to_spin(level, node)
+            spun = stack.spins or [executor for other in stacks() for executor in other.spins]
+            way = _ONE_EXECUTOR if spun else _way_to_spin(level, node)
+            if spun and not any(executor.get_nodes() for executor in spun):
+                way = f"its executor has no node: write executor.add_node({_name_of(level, node)}) before it spins"
             called = f"{_joined(kept)} {'cannot' if is_polled else 'should'} be called"
             text = f"{name} has not been spun {for_long}, and {called}: {who} is in {place}; {way}"
         return _Report(text, f"{name} is spun")

@@ -304,6 +304,17 @@ def test_a_node_beside_one_that_a_thread_spins(node: Node, caplog: Caplog) -> No
     assert "; spin all nodes together: executor = SingleThreadedExecutor()" in text
 
 
+def test_an_executor_without_nodes(node: Node, caplog: Caplog) -> None:
+    """It is the one that has to get the node."""
+    node.create_timer(0.01, lambda: None)
+    executor = SingleThreadedExecutor()
+    with in_thread(executor.spin):
+        until(lambda: told(caplog))
+        executor.shutdown()
+    [text] = told(caplog)
+    assert text.endswith("; its executor has no node: write executor.add_node(node) before it spins")
+
+
 def test_a_node_beside_the_one_that_is_spun(node: Node, caplog: Caplog) -> None:
     """Told with where the others are spun, by a thread that does nothing else."""
     other = Node("other")
