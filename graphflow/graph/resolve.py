@@ -31,7 +31,6 @@ from graphflow.markup.source import Source
 from graphflow.markup.substitutions import Outside, Run
 from graphflow.markup.tree import Item, source_of, tree
 from graphflow.names import Resolver, check_references, expand, split
-from graphflow.workspace.package_share import in_launch_file
 from graphflow.workspace.project import no_file, project_root, shown
 
 _ANYBODY = (
@@ -207,6 +206,8 @@ class _ParamsFiles:
             return []
         if not path.is_file():
             is_of_launch = place.file in self._problems.launch_files
+            from graphflow.workspace.package_share import in_launch_file  # only after a mistake
+
             in_package = in_launch_file(path, self._graph_files[place.file]) if is_of_launch else ""
             self._problems.add_unless_ros(place, no_file(path, in_package))
             return []

@@ -190,12 +190,8 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
     having = owners(what, workspace)
     if having:
         return f"{what!r} is an executable of {' and of '.join(having)}: graphflow run {having[0]} {what}"
-    if (context := click.get_current_context(silent=True)) is not None:
-        top = context.find_root()
-        if isinstance(top.command, click.Group) and what in top.command.list_commands(top):
-            return f"{what!r} is a command of its own: graphflow {shlex.join([what, *words])}"
     if words and not words[0].startswith("-"):  # ROS's PKG EXE
-        return _no_such_package(what, words[0], workspace)
+        return _no_such_package(what, words, workspace)
     known = {f.stem for folder in (root, demos_root()) for f in (folder / "nodes").glob("*.py")} | {
         *project_nodes(root)
     }
@@ -206,8 +202,18 @@ def _why_none(what: str, root: Path, words: Sequence[str]) -> str:
     return f"there is no node {what!r}, here or with graphflow{did_you_mean(what, known)}"
 
 
-def _no_such_package(what: str, executable: str, workspace: Workspace) -> str:
-    """Return the error text for a package that there is not, with the folder or package that may be meant."""
+def _is_verb(word: str) -> bool:
+    """Whether a word is one of graphflow's own commands."""
+    context = click.get_current_context(silent=True)
+    top = None if context is None else context.find_root()
+    return top is not None and isinstance(top.command, click.Group) and word in top.command.list_commands(top)
+
+
+def _no_such_package(what: str, words: Sequence[str], workspace: Workspace) -> str:
+    """Return the error text for a package that there is not, with the folder, package or verb that may be meant."""
+    if _is_verb(what):
+        return f"{what!r} is a command of its own: graphflow {shlex.join([what, *words])}"
+    executable = words[0]
     inside = Path(what, f"{executable.removesuffix('.py')}.py")
     if inside.is_file():
         return f"{what!r} is a folder, and no package: graphflow run {shlex.quote(str(inside))}"

@@ -39,7 +39,7 @@ Kind = Parameter.Type
 TRUTHS = {"on": True, "yes": True, "y": True, "off": False, "no": False, "n": False}
 """Words that ROS 2 reads as booleans in parameter files, and YAML 1.2 does not."""
 RESULT = "SetParametersResult(successful=True), of rcl_interfaces.msg"
-"""What a callback of `add_on_set_parameters_callback` returns."""
+"""The result that callbacks of `add_on_set_parameters_callback` return."""
 RELATIVE_TOLERANCE = 1e-6
 """The greatest relative distance of a value from a step."""
 

@@ -14,7 +14,7 @@ _loops: set[CodeType] = set()
 """The functions with such a loop that has been told."""
 
 
-def is_told(code: CodeType) -> bool:
+def is_reported(code: CodeType) -> bool:
     """Whether such a loop of a function has been told."""
     return code in _loops
 
@@ -32,7 +32,7 @@ class Successes:
         The warning comes again when the program ends, since the output of the loop hides the first.
         """
         last, self._last = self._last, (frame.f_code, frame.f_lineno)
-        if last != self._last or is_told(frame.f_code):
+        if last != self._last or is_reported(frame.f_code):
             return
         from graphflow.analysis.mistakes.calls.inverted_waits import inverted_waits  # most programs never need it
         from graphflow.analysis.syntax import syntax_of

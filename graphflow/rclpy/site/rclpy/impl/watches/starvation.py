@@ -181,7 +181,7 @@ class HeldUp:
         thread = f"thread {stack.thread.name}"
         if (is_begun and not kept) or self._is_reported(stack.thread, "t", thread) or self.was_reported(name):
             return None
-        if any(inverted_waits.is_told(frame.f_code) for frame in level.frames):
+        if any(inverted_waits.is_reported(frame.f_code) for frame in level.frames):
             return None
         for_long, place = f"for {seconds:.1f} s", place_of(level, node)
         if not is_begun:

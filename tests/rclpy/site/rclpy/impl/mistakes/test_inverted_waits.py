@@ -11,7 +11,7 @@ from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
 
 from rclpy.action import ActionClient, ActionServer
-from rclpy.impl.mistakes.inverted_waits import is_told
+from rclpy.impl.mistakes.inverted_waits import is_reported
 from rclpy.node import Node
 
 SOURCE = """\
@@ -65,7 +65,7 @@ def test_a_loop_that_lacks_its_not(
     way = f"write while not client.{word}(timeout_sec=5.0):"
     text = f"{file}:4: this loop goes on for as long as client.{word} finds a server; {way}"
     assert caplog.messages[0].endswith(text.removeprefix(f"{tmp_path}/"))
-    assert is_told(space["inverted"].__code__)
+    assert is_reported(space["inverted"].__code__)
     ((tell, words),) = at_exit
     tell(*words)
     assert caplog.messages[1] == caplog.messages[0]
