@@ -5,6 +5,8 @@ PYTEST_DONT_REWRITE: `graphflow rclpy enable` has each Python import this, befor
 
 from __future__ import annotations
 
+import sys
+
 TYPE_CHECKING = False  # type checkers treat the name as true; importing `typing` would take longer than this file
 if TYPE_CHECKING:
     from graphflow.errors import (
@@ -295,7 +297,12 @@ def __getattr__(name: str) -> object:
     home = home_of(name)
     hint = f"write from {home} import {name}" if home else translation(name, "names")
     if name[:1].isupper() and name.lower() in __all__:
-        hint = f"the decorator is written @{name.lower()}"
+        hint = "the function is written run" if name == "Run" else f"the decorator is written @{name.lower()}"
+    if not hint and sys._getframe(1).f_code.co_name == "_handle_fromlist":  # of `from graphflow import ...`
+        from graphflow.names import nearest
+
+        near = nearest(name, __all__, cutoff=0.75)
+        hint = f"did you mean {near!r}?" if near is not None else ""
     if hint:  # an AttributeError's text would not reach who imports the name
         raise ImportError(f"graphflow has no {name}; {hint}")
     raise AttributeError(f"module 'graphflow' has no attribute {name!r}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -66,3 +67,18 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="module 'graphflow' has no attribute 'Nod'"):
         graphflow.Nod  # noqa: B018
     assert not hasattr(graphflow, "_nothing")
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("Nod", "graphflow has no Nod; did you mean 'Node'?"),
+        ("Timer", "graphflow has no Timer; the decorator is written @timer"),
+        ("Run", "graphflow has no Run; the function is written run"),
+        ("nothing_alike", "cannot import name 'nothing_alike' from 'graphflow'"),
+    ],
+)
+def test_an_import_of_an_unknown_name(name: str, told: str) -> None:
+    """It names the one that is meant."""
+    with pytest.raises(ImportError, match=re.escape(told)):
+        exec(f"from graphflow import {name}")

@@ -35,8 +35,16 @@ def instead(type_: FieldType, value: object, fields: Sequence[Field] = ()) -> st
     return f"; write {text}" if text is not None and len(text) <= _SHOWN else ""
 
 
+def instead_of_rclpys(cls: type) -> str:
+    """Return how to import graphflow's class in place of one of rclpy's; empty for any other class."""
+    found = re.match(r"(\w+\.(?:msg|srv|action))\._", cls.__module__)
+    return f"that class is rclpy's: write from graphflow.msgs.{found[1]} import {cls.__name__}" if found else ""
+
+
 def in_its_message(type_: type[base.Message], value: object) -> str:
     """Return advice on a value that was given in place of a message with a single field; empty if there is none."""
+    if way := instead_of_rclpys(type(value)):
+        return f"; {way}"
     fields = type_.SCHEMA.fields
     if len(fields) != 1 or not isinstance(value, (str, int, float)):
         return ""

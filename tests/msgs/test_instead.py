@@ -9,7 +9,7 @@ import pytest
 
 from graphflow.errors import EncodeError
 from graphflow.msgs import registry
-from graphflow.msgs.instead import named
+from graphflow.msgs.instead import in_its_message, instead_of_rclpys, named
 from graphflow.msgs.values import from_plain
 from graphflow.times import Duration, Time
 
@@ -138,3 +138,13 @@ def test_times_as_numbers(span: Any) -> None:
         registry.interface_class("std_msgs/msg/Float64")(data=span).to_bytes()
     with pytest.raises(EncodeError, match=r"expected int64, got \w+\(.*\); write \.nanoseconds behind it$"):
         registry.interface_class("std_msgs/msg/Int64")(data=span).to_bytes()
+
+
+def test_classes_of_rclpy() -> None:
+    """How graphflow's own is imported is told, for a class and for a message."""
+    rclpys = type("String", (), {"__module__": "std_msgs.msg._string"})
+    way = "that class is rclpy's: write from graphflow.msgs.std_msgs.msg import String"
+    own = registry.interface_class("std_msgs/msg/String")
+    assert instead_of_rclpys(rclpys) == way
+    assert in_its_message(own, rclpys()) == f"; {way}"
+    assert instead_of_rclpys(own) == ""

@@ -16,6 +16,7 @@ from graphflow.errors import DeclarationError, InvalidName, Place
 from graphflow.interface import OnError
 from graphflow.msgs import base
 from graphflow.msgs.base import Message
+from graphflow.msgs.instead import instead_of_rclpys
 from graphflow.names import expand
 from graphflow.qos import Durability, History, Liveliness, Qos, Reliability
 from graphflow.runtime.callables import code_of
@@ -65,6 +66,8 @@ def _kind_hint(type_: object, kind: type) -> str:
     """Return a hint for a class of another kind of interface."""
     if not isinstance(type_, type):
         return ""
+    if way := instead_of_rclpys(type_):
+        return f"; {way}"
     whole, _, part = type_.__name__.rpartition("_")
     if part in ("Request", "Response", "Goal", "Result", "Feedback") and whole:
         kind_of = "action" if part in ("Goal", "Result", "Feedback") else "service"
