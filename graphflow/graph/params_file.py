@@ -126,7 +126,8 @@ def _sections(src: Source, problems: list[Problem]) -> Iterator[Section]:
                 if at and key == PARAMETERS:
                     problems.append(Problem(place, f"{PARAMETERS} is a mapping{_with_colon(value)}"))
                 else:
-                    problems.append(Problem(place, f"{key!r}: put parameters below NODE and {PARAMETERS}"))
+                    above = f"{PARAMETERS}:" if at else f"/**: and, indented, {PARAMETERS}:"
+                    problems.append(Problem(place, f"{key!r}: write above it {above} and indent it below that"))
             elif key == PARAMETERS and at:
                 pattern = "/" + "/".join(str(part).strip("/") for part in at)
                 params = flatten(src, value, here, problems)

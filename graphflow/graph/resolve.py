@@ -179,12 +179,16 @@ class _ParamsFiles:
             found |= settings
         return found
 
-    def checked(self, spec: NodeSpec, at: source.Path) -> tuple[str, ...]:
+    def checked(self, spec: NodeSpec, at: source.Path, node: str) -> tuple[str, ...]:
         """Return the parameter files of a program that reads them itself, once they are found valid."""
         found = [(self._path(name, place), place) for name, place in self._named(spec, at)]
         for path, place in found:
             if path not in self._files:
-                self._read(path, place)
+                self._files[path] = self._read(path, place)
+            sections = self._files[path]
+            if sections and not spec.keep_names and not any(section.fits(node) for section in sections):
+                hint = params_file.hint_for(sections, node)
+                self._problems.remark(place, f"{path.name} has nothing for {node}{hint}")
         return tuple(str(path) for path, _ in found if path.is_file())
 
     def _named(self, spec: NodeSpec, at: source.Path) -> list[tuple[str, Place]]:
@@ -198,8 +202,11 @@ class _ParamsFiles:
         return [(name, self._src.place((*at, i))) for i, name in enumerate(spec.shared_params_file)]
 
     def _path(self, name: str, place: Place) -> Path:
-        is_here = place.file in self._problems.launch_files and Path(name).is_file()  # as ROS takes it
-        return Path(name).absolute() if is_here else self._graph_files[place.file].parent / name
+        beside = self._graph_files[place.file].parent / name
+        if place.file not in self._problems.launch_files:
+            return beside
+        here = Path(name).absolute()  # as ROS takes it
+        return here if here.is_file() or (here.parent.is_dir() and not beside.is_file()) else beside
 
     def _read(self, path: Path, place: Place) -> list[Section]:
         if "$(" in str(path):  # a substitution that failed, which has been reported
@@ -233,7 +240,7 @@ def _nodes(
         command = programs.command(spec, base)
         if command is None:
             continue
-        reads = files.checked(spec, base) if spec.exec_ else ()
+        reads = files.checked(spec, base, name) if spec.exec_ else ()
         known = {} if spec.exec_ else files.params(spec, base, name)
         nodes[name] = PlannedNode(
             name=name,

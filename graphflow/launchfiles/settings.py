@@ -133,8 +133,11 @@ def _params(params: list[Item], files: list[Item], complain: Complain) -> dict[s
     for param in params:
         if isinstance(param.value, dict) and not param.entries.keys() & {*_OF_PARAMS}:
             first, given = next(iter(param.entries.items()), ("rate", Item(1.0, param.place)))
-            way = f"such as - {{name: {first}, value: {json.dumps(given.plain(), default=str)}}}"
-            complain(param.place, f"param: expected a list of names and values, {way}")
+            value = json.dumps(given.plain(), default=str)
+            way = f"expected a list of names and values, such as - {{name: {first}, value: {value}}}"
+            if param.place.file.endswith((".xml", ".launch")):
+                way = f'write <param name="{first}" value="{given.plain()}"/>'
+            complain(param.place, f"param: {way}")
             continue
         _refuse_unknown(param, complain)
         if not param.entries.keys() & {"from", "param", "value"} and param.entries.keys() - {*_OF_PARAMS}:
@@ -181,6 +184,7 @@ def _refuse_unknown(param: Item, complain: Complain) -> None:
         if key not in _OF_PARAMS:
             former = ros1_words.attribute("param", key)
             hint = f"; {former}" if former else did_you_mean(key, _OF_PARAMS)
+            hint = "; write value" if key == "default" else hint
             complain(value.at, f"param: unknown attribute {key!r}{hint}")
 
 

@@ -343,7 +343,9 @@ class _Builder:
 
     def _twice(self, path: Path, place: Place) -> GraphFileError:
         first = self._keys[path].line
-        return _error(place, f"the key {path[-1]!r} appears twice, first on line {first}; remove one")
+        way = f"for two nodes, give one another name, such as {path[-1]}2; else remove one"
+        way = way if path[:-1] == ("nodes",) else "remove one"
+        return _error(place, f"the key {path[-1]!r} appears twice, first on line {first}; {way}")
 
 
 def _key_fault(event: yaml.ScalarEvent, place: Place, line: str) -> str:

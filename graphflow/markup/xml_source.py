@@ -121,7 +121,10 @@ class _Reader:
 
     def _text(self, text: str) -> None:
         if text.strip() and self._open:
-            name = self._open[-1].name
+            name, attributes = self._open[-1].name, self._open[-1].attributes
+            if name == "param" and "name" in attributes:
+                way = f'<param name="{attributes["name"].value}" value="{text.strip()[:40]}"/>'
+                raise _error(self._open[-1].place, f"<param> has no text inside: write {way}")
             if former := action(name):
                 raise _error(self._open[-1].place, f"<{name}> {former}")
             raise _error(self._place, f"{text.strip()[:40]!r}: text between elements means nothing; use an attribute")

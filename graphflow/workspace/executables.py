@@ -160,6 +160,8 @@ def command_of(package: str, name: str, workspace: Workspace, env: Mapping[str, 
             raise NoExecutable(text, is_slip=bool(own.why_no_executable))
         near = own.missing_entry(name) or did_you_mean(name, own.executables)
         near = near or f"; there is {', '.join(own.executables)}"
+        if name.removesuffix(".py") in own.why_no_executable:  # which explains it
+            near = ""
         near += own.why_no_executable + workspace.way_to_double(package)
         raise NoExecutable(f"the package {package!r} has no executable {name!r}{near}", is_slip=True)
     fault = own.fault_of(known)

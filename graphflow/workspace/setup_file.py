@@ -188,6 +188,7 @@ def _corrections(text: str, folder: Path) -> Iterator[str]:
     name, _, path = (part.strip() for part in text.partition("="))
     if (folder / path.replace(".", "/")).with_suffix(".py").is_file():
         yield f"{name} = {path}:main"
+    yield f"{name} = {path.replace('/', '.')}"
     module, _, function = path.rpartition(".")
     yield f"{name} = {module}:{function}"
 

@@ -46,7 +46,8 @@ def test_a_path_that_begins_at_the_package(lamp: Path, path: str) -> None:
     file = lamp / "launch" / "a.launch.xml"
     file.write_text(XML.format(name="blink", path=path))
     (told,) = load(file, [], {}).remarks
-    assert told.endswith(f"there is no file src/lamp/launch/{path}; write $(find-pkg-share lamp)/config/lamp.yaml")
+    place = path if path == "lamp.yaml" else f"src/lamp/launch/{path}"  # a folder that is there is a better one
+    assert told.endswith(f"there is no file {place}; write $(find-pkg-share lamp)/config/lamp.yaml")
     right = "os.path.join(get_package_share_directory('lamp'), 'config/lamp.yaml')"
     assert in_launch_file(file.parent / path, file.with_suffix(".py")) == right
 
@@ -55,7 +56,21 @@ def test_a_file_that_the_package_does_not_have(lamp: Path) -> None:
     """Is named alone."""
     (lamp / "launch" / "a.launch.xml").write_text(XML.format(name="blink", path="other.yaml"))
     (told,) = load(lamp / "launch" / "a.launch.xml", [], {}).remarks
-    assert told.endswith("there is no file src/lamp/launch/other.yaml")
+    assert told.endswith("there is no file other.yaml")
+    (lamp / "launch" / "a.launch.xml").write_text(XML.format(name="blink", path="src/lamp/config/lmp.yaml"))
+    (told,) = load(lamp / "launch" / "a.launch.xml", [], {}).remarks
+    assert told.endswith("there is no file src/lamp/config/lmp.yaml; did you mean 'lamp.yaml'?")
+
+
+def test_a_file_for_other_nodes(lamp: Path) -> None:
+    """Is told where the launch file gives the node a name; another name may be that of the program."""
+    (lamp / "config" / "lamp.yaml").write_text(VALUES.replace("/**", "/lamp"))
+    text = XML.format(name="blink", path="src/lamp/config/lamp.yaml")
+    (lamp / "launch" / "a.launch.xml").write_text(text)
+    assert load(lamp / "launch" / "a.launch.xml", [], {}).remarks == ()
+    (lamp / "launch" / "a.launch.xml").write_text(text.replace("exec=", 'name="lamp" namespace="left" exec='))
+    (told,) = load(lamp / "launch" / "a.launch.xml", [], {}).remarks
+    assert "lamp.yaml has nothing for /left/lamp; did you mean /left/lamp in place of /lamp at " in told
 
 
 def test_an_executable_that_is_called_as_its_file(lamp: Path) -> None:

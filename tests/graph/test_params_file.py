@@ -93,9 +93,9 @@ def test_the_later_section_counts(tmp_path: Path) -> None:
         ("", "p.yaml:1:1: a parameter file is a mapping: NODE: {ros__parameters: ...}"),
         ("{}", "p.yaml:1:1: the file has no section; write NODE: {ros__parameters: {rate: 2.0}}"),
         ("nodes: {/a: {class: 'n:A'}}", "p.yaml:1:1: this is a graph file: graphflow up p.yaml"),
-        ("nodes: {a: 1}", "p.yaml:1:9: 'a': put parameters below NODE and ros__parameters"),
-        ("a: 1", "p.yaml:1:1: 'a': put parameters below NODE and ros__parameters"),
-        ("a:\n  rate: 1", "p.yaml:2:3: 'rate': put parameters below NODE and ros__parameters"),
+        ("nodes: {a: 1}", "p.yaml:1:9: 'a': write above it ros__parameters: and indent it below that"),
+        ("a: 1", "p.yaml:1:1: 'a': write above it /**: and, indented, ros__parameters: and indent it below that"),
+        ("a:\n  rate: 1", "p.yaml:2:3: 'rate': write above it ros__parameters: and indent it below that"),
         ("a:\nros__parameters:\n  x: 1", "p.yaml:2:1: 'ros__parameters' belongs below 'a': indent it and what follows"),
         ("a:\n  ros__parameters:\n  x: 1", "p.yaml:3:3: 'x' belongs below 'ros__parameters': indent it and what"),
         ("ros__parameters: {x: 1}", "p.yaml:1:1: ros__parameters belongs below a node: write NODE: above, and"),
@@ -240,7 +240,7 @@ def test_a_wildcard_must_mean_somebody(tmp_path: Path) -> None:
         ("/c: {ros__parameters: {x: 1}}", "p.yaml has nothing for /a"),
         ("/a: {ros__parameters: {x: 1}}\n/ab: {ros__parameters: {x: 1}}", "there is no node /ab; did you mean '/a'?"),
         ("/a: {ros_parameters: {x: 1}}", "'ros_parameters': did you mean 'ros__parameters', with two _ in a row?"),
-        ("/a: {x: 1}", "'x': put parameters below NODE and ros__parameters"),
+        ("/a: {x: 1}", "'x': write above it ros__parameters: and indent it below that"),
     ],
 )
 def test_mistakes_in_a_file_are_mistakes_of_the_graph(tmp_path: Path, text: str, problem: str) -> None:

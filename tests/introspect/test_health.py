@@ -12,6 +12,7 @@ from graphflow.introspect import health
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.health import Look, examine, needs_second, read
 from graphflow.machines.cache import GraphCache
+from graphflow.qos import Qos
 from graphflow.system import host_name
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.process import ProcessToken
@@ -88,6 +89,14 @@ def test_lost_messages(dropped: int, is_told: bool) -> None:
     assert bool(told) is is_told
     if told:
         assert told[0].startswith("subscription /scan of /a has lost 99 % of 1000 messages")
+
+
+@pytest.mark.parametrize(("depth", "is_told"), [(1, False), (10, True)])
+def test_lost_messages_of_a_queue_of_one(depth: int, is_told: bool) -> None:
+    """It keeps the newest message on purpose."""
+    entity = Entity(0, "a", 1, 2, SUB, "/", "a", "/scan", "std_msgs/msg/String", "RIHS01_0", Qos(depth=depth))
+    now = look(a={"subscription /scan": {"received": 1000, "dropped": 990}})
+    assert any("has lost" in fault for fault in found(Seen(entity.token), [], now).faults) is is_told
 
 
 def test_a_few_lost_messages_are_nothing() -> None:

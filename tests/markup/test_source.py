@@ -168,6 +168,10 @@ NESTED = 900
         ("a: " + "{a: " * NESTED + "}" * NESTED, f"1:{4 * MAX_DEPTH}: nested more than {MAX_DEPTH} deep"),
         ("\n".join("- 1" for _ in range(MAX_VALUES)), f"{MAX_VALUES}:3: the file has more than 50,000 values"),
         ("a: 1\nb: 2\na: 3", "3:1: the key 'a' appears twice, first on line 1; remove one"),
+        (
+            "nodes:\n  /a: {x: 1}\n  /a: {x: 2}",
+            "3:3: the key '/a' appears twice, first on line 2; for two nodes, give one another name, such as /a2; else",
+        ),
         ("x: {a: 1, 'a': 2}", "1:11: the key 'a' appears twice, first on line 1; remove one"),
         ("1: a", "1:1: the key 1 is not text; write it in quotes: '1'"),
         ("x:\n  true: a", "2:3: the key true is not text; write it in quotes: 'true'"),

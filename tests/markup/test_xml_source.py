@@ -75,6 +75,10 @@ def test_values_of_parameters(tmp_path: Path, attributes: str, value: object) ->
         ),
         ("<robot/>", "f.xml:1:1: a launch file's outermost element is <launch>, not <robot>"),
         ("<launch>\n hello</launch>", "'hello': text between elements means nothing; use an attribute"),
+        (
+            '<launch>\n<node pkg="a" exec="b">\n<param name="rate">5.0</param></node></launch>',
+            'f.xml:3:1: <param> has no text inside: write <param name="rate" value="5.0"/>',
+        ),
         ("<launch>" + "<group>" * 50, "nested more than 40 deep"),
         (BOMB, "<!DOCTYPE> is not used here; remove it"),
         ('<launch a="&undefined;"/>', "not valid XML: undefined entity"),

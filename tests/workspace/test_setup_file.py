@@ -47,6 +47,7 @@ def test_an_executable_without_its_function(tmp_path: Path) -> None:
         ("entry_points", "entry_point", "setup.py:5: setup() has no argument 'entry_point'; did you mean 'entry_poi"),
         ("console_scripts", "console_script", "setup.py:6: nobody reads the group 'console_script'; did you mean"),
         ('one:main",', 'one:main"', "setup.py:7: 'one = lamp.one:maintwo = lamp.two:main' is one text: a comma is mis"),
+        ("lamp.one", "lamp/one", "setup.py:7: 'one = lamp/one:main' names no function; did you mean 'one = lamp.one:m"),
         ("one:main", "one.main", "setup.py:7: 'one = lamp.one.main' names no function; did you mean 'one = lamp.one:m"),
         (
             "one:main",

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from graphflow.cli import output
 from graphflow.cli.verbs import Verb
 from graphflow.cli.words import pattern_option
 from graphflow.errors import InvalidName, UsageFault
@@ -141,14 +142,17 @@ def take_choice(options: dict[str, Any], topics: tuple[str, ...] = (), **more: A
     return Choice(topics=named, services=services, regex=regex, **excluded, **more)
 
 
-def refuse_bags(topics: tuple[str, ...]) -> None:
-    """Refuse the path of a bag beside the topics to record, if it cannot be a topic's name."""
+def check_for_bags(topics: tuple[str, ...]) -> None:
+    """Refuse the path of a bag beside the topics to record if it cannot be a topic's name; note one that can be."""
     for word in topics if len(topics) > 1 else ():
         try:
             expand(word, "/", "cli")
         except InvalidName as error:
             if Path(word).parent.is_dir():
                 raise UsageFault(f"{error}; if it is the bag to be written, write -o {word}") from None
+    without = [word for word in topics if not word.startswith("/")]
+    if len(without) == 1 < len(topics):
+        output.talk(f"note: /{without[0]} is recorded; if {without[0]} is the name of the bag, write -o {without[0]}")
 
 
 def _check_format(_: click.Context, __: click.Parameter, word: str | None) -> str | None:

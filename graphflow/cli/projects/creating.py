@@ -40,6 +40,9 @@ class _Create(click.Command):
         left = super().parse_args(ctx, words)
         if left and not ctx.resilient_parsing:
             name = ctx.params["name"]
+            if kind := next((word for word in (name, *left) if word in BUILD_TYPES), None):
+                rest = [word for word in (name, *left) if word != kind]
+                ctx.fail(f"{kind} is a build type: write graphflow pkg create --build-type {kind} {' '.join(rest)}")
             if all(map(known_dependency, left)):
                 ctx.fail(f"write graphflow pkg create {name} --dependencies {' '.join(left)}")
             one = near_name("_".join([name, *left]))

@@ -260,8 +260,9 @@ def _instead_of(file: Path) -> str:
 def _program_of(project: str, name: str, root: Path) -> Path | None:
     """Return the program for rclpy of a project here, or around the working directory; None if there is none."""
     folder = root if project == root.name else Path.cwd() / project
-    file = folder / project / f"{name.removesuffix('.py')}.py"
-    if not (folder / "pyproject.toml").is_file() or not file.is_file() or not uses_ros(file):
+    files = [folder / inside / f"{name.removesuffix('.py')}.py" for inside in (project, "", "nodes")]
+    file = next((file for file in files if file.is_file() and uses_ros(file)), None)
+    if not (folder / "pyproject.toml").is_file() or file is None:
         return None
     return file.relative_to(Path.cwd()) if file.is_relative_to(Path.cwd()) else file
 

@@ -14,12 +14,12 @@ from graphflow.cli.messages.bag_words import (
     FORMATS,
     BagVerb,
     all_or_some,
+    check_for_bags,
     chunk_compression,
     full_names,
     moment_option,
     new_bag_options,
     qos_path_option,
-    refuse_bags,
     remap_rules,
     storage_option,
     take_choice,
@@ -111,7 +111,7 @@ def record(topics: tuple[str, ...], **options: Any) -> int:
     if topics and (options["everything"] or options["all_topics"]):
         raise UsageFault(all_or_some(topics))
     if options["folder"] is None:
-        refuse_bags(topics)
+        check_for_bags(topics)
     from graphflow.cli.messages import recording
 
     use_project()

@@ -122,6 +122,8 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
         near = f"; did you mean {begun[0]!r}?" if begun else did_you_mean(rest[0], known)
         if own is not None and own.known_as(rest[0]) is not None:
             near = f"; that is an executable: graphflow run {first} {rest[0]}"
+        if own is None and (why := why_no_package(first, find_workspace(Path.cwd()))) is not None:
+            raise UsageFault(f"Package {first!r} not found: {why}")
         raise UsageFault(f"{first} has no file {rest[0]!r}{near}")
     if own is not None:
         for fault in filter(None, (fault_of(own.folder / "package.xml"), uninstalled_files(own))):

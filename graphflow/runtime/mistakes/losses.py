@@ -19,6 +19,11 @@ MANY_LOSSES = 50
 MANY_GAPS = 10
 """Messages read right after a loss before a loop counts as slow."""
 
+_FASTER = (
+    "Do less in the handler, have less sent, or keep only the newest with a depth of 1; a group of its own helps if "
+    "other handlers hold it up"
+)
+
 
 class Losses:
     """The warnings about the queue of one subscription, each given once.
@@ -69,7 +74,7 @@ class Losses:
             )
         elif not self._has_warned_of_loss and dropped >= MANY_LOSSES and 2 * dropped >= received and self._depth > 1:
             if gaps is None:
-                handled, way = "handled", "Do less in the handler, give it a group of its own, or have less sent"
+                handled, way = "handled", _FASTER
             elif gaps >= MANY_GAPS and 2 * gaps >= received - dropped:
                 handled, way = "read", "Do less in the loop, have less sent, or keep only the newest with a depth of 1"
             else:

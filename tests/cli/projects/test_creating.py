@@ -133,6 +133,9 @@ def test_without_a_build_type(machine: Machine, tmp_path: Path) -> None:
     for folder, file in ((tmp_path, "other/other/talker.py"), (tmp_path / "other", "other/talker.py")):
         told = machine.look("run", "other", "talker", cwd=folder, code=2)
         assert f"other is a project of graphflow's; to run its program for rclpy: graphflow run {file}\n" in told
+    program.rename(tmp_path / "other/talker.py")
+    told = machine.look("run", "other", "talker", cwd=tmp_path / "other", code=2)
+    assert "to run its program for rclpy: graphflow run talker.py\n" in told
 
 
 def test_a_list_of_dependencies_takes_the_words_behind_it(machine: Machine, tmp_path: Path) -> None:
@@ -147,6 +150,8 @@ def test_a_list_of_dependencies_takes_the_words_behind_it(machine: Machine, tmp_
     [
         ("my_pkg rclpy std_msgs", "write graphflow pkg create my_pkg --dependencies rclpy std_msgs"),
         ("my robott", "a name is one word, such as my_robott; list the packages that it needs after --dependencies"),
+        ("my_pkg ament_python", "write graphflow pkg create --build-type ament_python my_pkg"),
+        ("ament_cmake my_pkg", "write graphflow pkg create --build-type ament_cmake my_pkg"),
         ("--node-name talker", "the package's name is missing; write it first: graphflow pkg create NAME"),
     ],
 )

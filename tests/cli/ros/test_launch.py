@@ -114,6 +114,10 @@ def test_launch_is_up(machine: Machine, tmp_path: Path) -> None:
     (folder / "scripts" / "drive.py").touch()
     told = machine.look("launch", "my_robot", "drive", cwd=tmp_path, code=2)
     assert told == "error: my_robot has no file 'drive'; that is an executable: graphflow run my_robot drive\n"
+    (folder / "package.xml").write_text("<package><name>my-robot</name></package>")
+    told = machine.look("launch", "my_robot", "talk.launch.yaml", cwd=tmp_path, code=2)
+    assert told.startswith("error: Package 'my_robot' not found: my_robot is the package 'my-robot'")
+    (folder / "package.xml").write_text("<package><name>my_robot</name></package>")
     (folder / "launch" / "all.launch.py").write_text(PYTHON)
     (folder / "launch" / "round").symlink_to(folder)
     told = machine.look("launch", "-p", "my_robot", "all.launch.py", "loud:=2", cwd=tmp_path)

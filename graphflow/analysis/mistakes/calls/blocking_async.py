@@ -19,9 +19,7 @@ def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
         if not _is_async(parents):
             continue
         match node:
-            case ast.Call(func=ast.Attribute(value=ast.Name("time"), attr="sleep"), args=[pause]) if not _is_short(
-                pause
-            ):
+            case ast.Call(args=[pause]) if _sleeps(node):
                 text = "time.sleep in an async def stops every handler of the process"
                 yield node.lineno, f"{text}; write await self.clock.sleep({ast.unparse(pause)})"
             case ast.While(test=ast.Constant(value=True | 1)) if (asking := _input_in(node)) is not None:
@@ -29,7 +27,8 @@ def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
                 text = "input() in an async def stops every handler of the process until a line comes"
                 yield asking.lineno, f"{text}; write await self.offload({call})"
             case ast.While(test=ast.Constant(value=True | 1)):
-                if not any(_pauses(part) for part, _ in walk(node, into_functions=False)):
+                inside = [part for part, _ in walk(node, into_functions=False)]
+                if not any(_pauses(part) or _sleeps(part) for part in inside):  # a sleep is told in its own line
                     text = "this loop never awaits, so no other handler of the process runs"
                     way = "end each turn with await self.clock.sleep(0.1), or write @timer(0.1) in place of the loop"
                     if _is_timer(parents):
@@ -49,6 +48,13 @@ def _input_in(loop: ast.While) -> ast.Call | None:
         if isinstance(part, ast.Call) and isinstance(part.func, ast.Name) and part.func.id == "input":
             return part
     return None
+
+
+def _sleeps(part: ast.AST) -> bool:
+    match part:
+        case ast.Call(func=ast.Attribute(value=ast.Name("time"), attr="sleep"), args=[pause]):
+            return not _is_short(pause)
+    return False
 
 
 def _pauses(part: ast.AST) -> bool:

@@ -122,8 +122,8 @@ def _hertz(value: ast.expr | None) -> int | None:
 def _milliseconds(value: ast.expr | None) -> int | None:
     """Return a number that seems to be in milliseconds, or None."""
     match value:
-        case ast.Constant(value=int(ms)) if not isinstance(ms, bool):
-            return ms if ms >= _LEAST_MS and ms % _STEP_MS == 0 and ms % _MINUTE else None
+        case ast.Constant(value=int() | float() as ms) if not isinstance(ms, bool):
+            return int(ms) if ms >= _LEAST_MS and ms % _STEP_MS == 0 and ms % _MINUTE else None
     return None
 
 

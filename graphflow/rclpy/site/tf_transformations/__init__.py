@@ -14,6 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 try:
     from transforms3d import affines, euler, quaternions
 except ModuleNotFoundError as error:
+    from graphflow.rclpy.hints import tracebacks
+
+    tracebacks.install()  # its frames are the program's alone
     raise ModuleNotFoundError(
         "tf_transformations needs transforms3d: pip install transforms3d", name=error.name
     ) from None

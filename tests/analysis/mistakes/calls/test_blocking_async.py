@@ -24,6 +24,13 @@ def test_a_sleep(pause: str) -> None:
     )
 
 
+def test_a_loop_with_a_blocking_pause() -> None:
+    """The pause alone is told, since its remedy is that of the loop."""
+    [(line, text)] = told("while True:\n    self.out.publish(Twist())\n    time.sleep(1.0)")
+    assert line == 5
+    assert text.endswith("write await self.clock.sleep(1.0)")
+
+
 @pytest.mark.parametrize("condition", ["True", "1"])
 def test_a_loop_without_a_pause(condition: str) -> None:
     """Its line is told, whatever it calls."""

@@ -67,6 +67,7 @@ def test_a_spin_outside_functions() -> None:
         ("rclpy.spin_until_future_complete(node, future)", _TIMER, "main()"),
         ("rclpy.spin_once(node)\n    print(node.heard)", "subscription(Int32, 'a', self.heard, 10)", "main()"),
         ("rclpy.spin_once(node)", "client(Trigger, 'go')", "main()"),
+        ("rclpy.spin_once(node, timeout_sec=5.0)", "subscription(Int32, 'a', self.heard, 10)", "main()"),
         ("pass", "subscription(Int32, 'a', self.heard, 10)", "rclpy.spin_once(node)"),
         ("rclpy.spin_once(node)", _TIMER, "rclpy.spin(node)"),
         ("rclpy.spin_once(node)", _TIMER, "rclpy.spin_until_future_complete(node, future)"),

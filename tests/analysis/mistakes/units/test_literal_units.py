@@ -96,7 +96,7 @@ def test_rates_as_periods(code: str, told: str) -> None:
     assert [told in text for text in texts] == ([True] if told else [])
 
 
-@pytest.mark.parametrize("period", ["60", "300", "3600", "500.0", "0.5", "True", "rate"])
+@pytest.mark.parametrize("period", ["60", "300", "3600", "600.0", "0.5", "30.0", "True", "rate"])
 def test_periods_that_may_be_meant(period: str) -> None:
     """Whole minutes, fractions, small numbers and computed ones are left alone."""
     assert literal_units(ast.parse(f"timer({period})")) == ()

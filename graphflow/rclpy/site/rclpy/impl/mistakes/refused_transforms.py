@@ -15,7 +15,7 @@ from graphflow.errors import Place
 from graphflow.tf.faults import TOLERANCE
 
 if TYPE_CHECKING:
-    from geometry_msgs.msg import Transform, TransformStamped
+    from geometry_msgs.msg import Quaternion, Transform, TransformStamped
 
 
 _EULER = "x, y, z, w = tf_transformations.quaternion_from_euler(roll, pitch, yaw)"
@@ -66,7 +66,16 @@ def _of_numbers(transform: Transform, frame: str) -> tuple[str, ...]:
         return ()
     fault = f"the rotation of {frame!r} is a quaternion of length {math.sqrt(squared):.4g}, not 1"
     is_angle = w in (0, 1) and squared > w
-    return fault, f"angles are converted: {_EULER}, in radians" if is_angle else _way_to_unit(squared)
+    return fault, _of_angle(turn) if is_angle else _way_to_unit(squared)
+
+
+def _of_angle(turn: Quaternion) -> str:
+    """Return how the angle in a rotation is converted."""
+    axes = [axis for axis in "xyz" if getattr(turn, axis)]
+    if len(axes) > 1:
+        return f"angles are converted: {_EULER}, in radians"
+    part = f"transform.rotation.{axes[0]} = math.sin(angle / 2)"
+    return f"for an angle in radians write {part} and transform.rotation.w = math.cos(angle / 2)"
 
 
 def _way_to_unit(squared: float) -> str:

@@ -143,6 +143,7 @@ class HeldUp:
         keeps = "is due again"
         if others:
             keeps, way = f"keeps {_joined(others)} waiting", f"{RETURN}, or {own_group(run)}"
+            way = own_group(run) if title.startswith("action ") else way  # which goes on until its goal has ended
         if level.waiting is not None:
             way = "it spins there; let it return instead, and the spin that called it continues"
         text = f"{title} has been running for {seconds:.1f} s, now in {place_of(level, node)}, and {keeps}: {way}"

@@ -43,12 +43,16 @@ def stamped(rotation: Quaternion, x: float = 0.0) -> TransformStamped:
 
 
 EULER = "angles are converted: x, y, z, w = tf_transformations.quaternion_from_euler(roll, pitch, yaw), in radians"
+ABOUT_Z = (
+    "for an angle in radians write transform.rotation.z = math.sin(angle / 2) and transform.rotation.w = "
+    "math.cos(angle / 2)"
+)
 
 
 @pytest.mark.parametrize(
     ("rotation", "length", "way"),
     [
-        (Quaternion(z=90.0, w=0.0), "90", EULER),
+        (Quaternion(z=90.0, w=0.0), "90", ABOUT_Z),
         (Quaternion(x=0.1, z=0.5, w=1.0), "1.122", EULER),
         (Quaternion(x=1.0, z=2.0, w=2.0), "3", "divide x, y, z and w by that length"),
         (Quaternion(w=0.0), "0", "no rotation has w = 1.0"),

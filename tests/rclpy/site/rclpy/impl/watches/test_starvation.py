@@ -154,7 +154,7 @@ def test_a_goal_whose_result_is_asked_for(node: Node, caplog: Caplog, monkeypatc
         until(result.done)
     text = told(caplog)[0]
     assert text.startswith("action execute of /server has been running for ")
-    assert "and keeps a request to cancel waiting: return from it soon" in text
+    assert "and keeps a request to cancel waiting: give it a callback group of its own" in text
 
 
 def test_a_callback_in_a_deadlock(node: Node, caplog: Caplog, monkeypatch: pytest.MonkeyPatch) -> None:
