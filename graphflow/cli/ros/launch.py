@@ -88,12 +88,11 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
     Raises:
         UsageFault: The package does not exist or has no such file.
     """
-    from graphflow.cli.substitutes import no_package
-    from graphflow.workspace.executables import SLIP, of_ros, package_share
+    from graphflow.workspace.executables import package_share
     from graphflow.workspace.manifest import fault_of
     from graphflow.workspace.packages import find_workspace
-    from graphflow.workspace.project import demos_root, project_root
-    from graphflow.workspace.unfound import uninstalled_files, why_no_package
+    from graphflow.workspace.project import project_root
+    from graphflow.workspace.unfound import uninstalled_files
 
     first, *rest = words
     if not rest or ":=" in rest[0] or Path(first).is_file():
@@ -101,34 +100,57 @@ def _file_of(words: tuple[str, ...]) -> tuple[str, list[str]]:
         return first, rest
     folder = package_share(first, project_root(Path.cwd()), os.environ)
     if folder is None:
-        if first.endswith(_ENDINGS) and package_share(rest[0], project_root(Path.cwd()), os.environ) is not None:
-            raise UsageFault(f"the package comes first: graphflow launch {' '.join([rest[0], first, *rest[1:]])}")
-        if substitute := no_package(first):
-            raise UsageFault(substitute)
-        why = why_no_package(first, find_workspace(Path.cwd()))
-        if why is None and first in of_ros():
-            graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
-            way = f"; to start its graph: graphflow up {first}" if graph else "; graphflow launch FILE starts a file"
-            raise UsageFault(f"the package {first!r} that comes with graphflow has no launch files{way}")
-        near = nearest(first, [*find_workspace(Path.cwd()).packages, *of_ros()], cutoff=SLIP)
-        way = f"; did you mean {near!r}?" if near is not None else _ELSEWHERE
-        raise UsageFault(f"Package {first!r} not found{f': {why}' if why else way}")
+        raise UsageFault(_no_package(first, rest))
     files = sorted(_files_below(folder))
     found = [file for file in files if file.match(rest[0]) and file.suffix in _ENDINGS]
     own = find_workspace(Path.cwd()).packages.get(first)
     if not found:
-        known = _launch_files(files)
-        begun = [name for name in known if name.startswith(f"{rest[0]}.")]
-        near = f"; did you mean {begun[0]!r}?" if begun else did_you_mean(rest[0], known)
-        if own is not None and own.known_as(rest[0]) is not None:
-            near = f"; that is an executable: graphflow run {first} {rest[0]}"
-        if own is None and (why := why_no_package(first, find_workspace(Path.cwd()))) is not None:
-            raise UsageFault(f"Package {first!r} not found: {why}")
-        raise UsageFault(f"{first} has no file {rest[0]!r}{near}")
+        raise UsageFault(_no_launch_file(first, rest[0], _launch_files(files)))
     if own is not None:
         for fault in filter(None, (fault_of(own.folder / "package.xml"), uninstalled_files(own))):
             output.talk(f"note: {fault}")
     return str(found[0]), rest[1:]
+
+
+def _no_package(first: str, rest: list[str]) -> str:
+    """Return the error text for a package that there is not."""
+    from graphflow.cli.substitutes import no_package
+    from graphflow.workspace.executables import SLIP, of_ros, package_share
+    from graphflow.workspace.packages import find_workspace
+    from graphflow.workspace.project import demos_root, project_root
+    from graphflow.workspace.unfound import why_no_package
+
+    if first.endswith(_ENDINGS) and package_share(rest[0], project_root(Path.cwd()), os.environ) is not None:
+        return f"the package comes first: graphflow launch {' '.join([rest[0], first, *rest[1:]])}"
+    if substitute := no_package(first):
+        return substitute
+    why = why_no_package(first, find_workspace(Path.cwd()))
+    if why is None and first in of_ros():
+        graph = (demos_root() / "graphs" / f"{first}.yaml").is_file()
+        way = f"; to start its graph: graphflow up {first}" if graph else "; graphflow launch FILE starts a file"
+        return f"the package {first!r} that comes with graphflow has no launch files{way}"
+    near = nearest(first, [*find_workspace(Path.cwd()).packages, *of_ros()], cutoff=SLIP)
+    way = f"; did you mean {near!r}?" if near is not None else _ELSEWHERE
+    return f"Package {first!r} not found{f': {why}' if why else way}"
+
+
+def _no_launch_file(package: str, name: str, known: list[str]) -> str:
+    """Return the error text for a file that a package does not have.
+
+    Args:
+        known: The launch files that it has.
+    """
+    from graphflow.workspace.packages import find_workspace
+    from graphflow.workspace.unfound import why_no_package
+
+    workspace = find_workspace(Path.cwd())
+    own = workspace.packages.get(package)
+    if own is None and (why := why_no_package(package, workspace)) is not None:
+        return f"Package {package!r} not found: {why}"
+    if own is not None and own.known_as(name) is not None:
+        return f"{package} has no file {name!r}; that is an executable: graphflow run {package} {name}"
+    begun = [file for file in known if file.startswith(f"{name}.")]
+    return f"{package} has no file {name!r}{f'; did you mean {begun[0]!r}?' if begun else did_you_mean(name, known)}"
 
 
 _ELSEWHERE = "; go to the folder that has it in src/, or to one within it, or start a file: graphflow launch FILE"

@@ -102,7 +102,7 @@ def test_the_name_of_a_bag_without_its_option(machine: Machine, tmp_path: Path) 
     talker.wait_for("Publishing")
     text = machine.run("bag", "record", "walk", "/chatter", "--duration", "2.5", cwd=tmp_path, code=0)
     assert "note: /walk is recorded; if walk is the name of the bag, write -o walk" in text
-    assert "yet; if walk is the name of the bag, write -o walk" in text
+    assert "/rosout; if walk is the name of the bag, write -o walk" in text
     text = machine.run("bag", "record", "bags/walk", "/chatter", "--duration", "2.5", cwd=tmp_path, code=0)
     assert "; if bags/walk is the name of the bag, write -o bags/walk" in text
     assert "write -o" not in machine.run("bag", "record", "/walk", "--duration", "0.5", "-o", "b", cwd=tmp_path, code=1)
