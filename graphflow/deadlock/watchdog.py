@@ -17,6 +17,8 @@ import time
 from asyncio import AbstractEventLoop, BaseEventLoop
 from collections import deque
 from collections.abc import Callable, Iterable
+from contextlib import suppress
+from pathlib import Path
 from types import CodeType
 
 from graphflow.analysis.frames import Frame, stack_of
@@ -203,7 +205,10 @@ class Watchdog:
             level, text = _of_others(seconds, time.process_time() - self._processor_time)
         else:
             blocked = f"{BLOCKED} {seconds:.1f} s in {shown[last]}: {_NOTHING_RUNS}"
-            level, text = logging.ERROR, f"{blocked}\n{_of_lock(frames[last]) or _remedy(frames)}"
+            way = _of_lock(frames[last]) or _of_loop(frames[last]) or _remedy(frames)
+            level, text = logging.ERROR, f"{blocked}\n{way}"
+            end = next((i for i, file in enumerate(files) if i > last and is_ours(file)), len(files))
+            shown = shown[:end]  # without what a short call of graphflow's was doing
         lines = "".join(f"\n  {place}" for place in shown[first:][-STACK_SHOWN:])
         logger.log(level, "%s%s", text, lines)
 
@@ -219,6 +224,18 @@ class Watchdog:
 
 def _remedy(frames: Iterable[Frame]) -> str:
     return _REMEDY if any("self" in frame.f_locals for frame in frames if is_users_frame(frame)) else _OUTSIDE
+
+
+def _of_loop(frame: Frame) -> str:
+    """Return the line and remedy of a loop in a frame's function that cannot but block; "" if it has none."""
+    from graphflow.analysis.mistakes.calls.blocking_async import blocking_async  # most programs never need it
+    from graphflow.analysis.syntax import syntax_of
+
+    file, lines = frame.f_code.co_filename, {line for *_, line in frame.f_code.co_lines()}
+    with suppress(OSError, SyntaxError, ValueError):  # its source is not available
+        found = [(line, text) for line, text in blocking_async(syntax_of(file).module) if line in lines]
+        return next((f"{Path(file).name}:{line}: {text}" for line, text in found), "")
+    return ""
 
 
 def _of_others(seconds: float, processor_time: float) -> tuple[int, str]:

@@ -90,6 +90,9 @@ def pair(item: Item, key: str, value: str, complain: Complain, *, is_written: bo
     name = item.entries.get(key)
     if name is None or not isinstance(name.value, str):
         way = f"one is written {key}: ..., {value}: ..."
+        old, arrow, new = str(item.value).partition(":=")
+        if isinstance(item.value, str) and arrow:
+            way = f"write {{{key}: {old}, {value}: {new}}}"
         if len(item.entries) == 1 and value not in item.entries:
             [(written, meant)] = item.entries.items()
             way = f"write {{{key}: {written}, {value}: {meant.plain()}}}"

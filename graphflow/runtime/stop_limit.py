@@ -248,10 +248,7 @@ class StopLimit:
         self._interrupts = None
 
     def _place(self) -> str:
-        frame = innermost(called_by_loop(stack_of(self._main)))
-        forgotten = "" if frame is None else unawaited.forgotten_in(frame.f_code)
-        why = f", in which {forgotten} is not awaited," if forgotten else ""
-        return next(place_of(self._main), "code outside this program") + why
+        return next(place_of(self._main), "code outside this program")
 
     def _end(self, elapsed: float, due: Step) -> None:
         from graphflow.runtime.mistakes.unended import catching_lines, left_over  # most programs never need it
@@ -341,4 +338,6 @@ def place_of(thread: int) -> Iterator[str]:
     """Yield the line of user code that a thread is in, if it is in one."""
     frame = innermost(called_by_loop(stack_of(thread)))
     if frame is not None:
-        yield f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}"
+        forgotten = unawaited.forgotten_in(frame.f_code)
+        why = f" ({forgotten} is not awaited)" if forgotten else ""
+        yield f"{frame.f_code.co_filename}:{frame.f_lineno} in {frame.f_code.co_name}{why}"

@@ -248,7 +248,7 @@ def _limited(item: pytest.Function, test: Test) -> Test:
                     found = _forgotten()
                     if graph is not None and not _is_of_a_line(error):
                         found += _unstarted(graph, error)
-                        found += await _unmet(graph) if graph.loop is loop else []
+                        found += await _unmet(graph, test) if graph.loop is loop else []
                     _report(found, item)
                     raise
                 finally:
@@ -303,7 +303,7 @@ def _unstarted(graph: Graph, error: BaseException) -> list[str]:
     return [*unstarted(graph, error)]
 
 
-async def _unmet(graph: Graph) -> list[str]:
+async def _unmet(graph: Graph, test: Test) -> list[str]:
     """Return a sentence for each unmet wait of a failing test."""
     from graphflow.analysis.user_code import place_in
     from graphflow.runtime.mistakes.errors.kept_errors import KeptErrors
@@ -315,7 +315,7 @@ async def _unmet(graph: Graph) -> list[str]:
     for _, name, error in KeptErrors(asyncio.get_running_loop()).failed():
         found.append(f"{name} failed, and nothing awaits it: {error!r} ({place_in(error)})")
     try:
-        found += await unmet(graph, before)
+        found += await unmet(graph, before, inspect.unwrap(test))
     except RuntimeError as error:  # the graph does not settle
         found.append(str(error))
     return found

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import ast
 import asyncio
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from graphflow.analysis.frames import awaited, code_of
-from graphflow.analysis.syntax import nodes_in
-from graphflow.analysis.user_code import parts_of
+from graphflow.analysis.syntax import nodes_in, syntax_of
+from graphflow.analysis.user_code import parts_of, short_place
 from graphflow.deadlock.startup_waits import place_of
 from graphflow.errors import Place
 from graphflow.executor import clock as executor_clock
 from graphflow.machines.lifecycle import LifecycleState
 from graphflow.machines.near_topics import is_misspelt
 from graphflow.names import did_you_mean, is_hidden
+from graphflow.runtime import callables
 from graphflow.runtime.endpoints.subscriptions import TopicSubscription
 from graphflow.runtime.endpoints.timer import Timer
 from graphflow.runtime.managed.lifecycle_node import LifecycleNode
@@ -55,11 +57,14 @@ def _afterwards(
     return found
 
 
-async def unmet(graph: Graph, before: Mapping[tuple[str, str], int] | None = None) -> list[str]:
+async def unmet(
+    graph: Graph, before: Mapping[tuple[str, str], int] | None = None, test: Callable[..., object] | None = None
+) -> list[str]:
     """Return a sentence for each unmet wait. Call it after the failure: messages in transit arrive meanwhile.
 
     Args:
         before: The arrivals as the test failed; those of now if None.
+        test: The test's function, if it is known.
     """
     cores = [core_of(node) for node in graph.nodes if node is not graph.tester and node.is_running]
     before = arrivals(graph) if before is None else before
@@ -73,11 +78,27 @@ async def unmet(graph: Graph, before: Mapping[tuple[str, str], int] | None = Non
     found += _inactive(graph)
     found += _dropped(graph)
     if has_stood_still:
-        found.append("the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)")
+        found.append(_still(test))
     found += at_nodes if not found else []
     if not found and any(not tap for _, tap in graph.taps):
         found += _unfed(graph, cores)
     return found or [*_real_times(cores)]
+
+
+def _still(test: Callable[..., object] | None) -> str:
+    """Return the sentence for a clock that was never advanced: the test may wait in real time instead."""
+    code = callables.code_of(test)
+    if code is not None:
+        lines = {line for *_, line in code.co_lines()}
+        with suppress(OSError, SyntaxError, ValueError):  # its source is not available
+            for node in nodes_in(syntax_of(code.co_filename).module):
+                match node:
+                    case ast.Call(func=ast.Attribute(value=ast.Name("asyncio"), attr="sleep"), args=[span]):
+                        if node.lineno in lines:
+                            text = "asyncio.sleep waits in real time, and the test's clock stood still"
+                            way = f"write await graph.clock.advance({ast.unparse(span)})"
+                            return f"{short_place(code.co_filename, node.lineno)}: {text}; {way}"
+    return "the test's clock stood still, and something waits for time: await graph.clock.advance(1.0)"
 
 
 def _real_times(cores: list[NodeCore]) -> Iterator[str]:

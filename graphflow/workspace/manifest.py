@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import ast
+import re
+from collections.abc import Iterator
 from pathlib import Path
 from xml.parsers import expat
 
-from graphflow.reading import found_text
+from graphflow.reading import found_text, lenient_text
 
+_SCRIPTS = re.compile(r"\s*(?:script[-_]dir|install[-_]scripts)\s*=\s*\$base/lib/([\w.-]+)\s*$")
+_PACKAGES = re.compile(r"\bpackages\s*=\s*\[([^\]]*)\]")
+"""A literal list of a setup.py."""
 _MISMATCHED = expat.errors.codes[expat.errors.XML_ERROR_TAG_MISMATCH]
 
 
@@ -64,6 +69,23 @@ def name_fault(folder: Path, name: str) -> str | None:
                         line = keyword.value.lineno
                         return f"{file}:{line}: the package is called {called!r} here, and {name!r} in package.xml"
     return None
+
+
+def leftovers(folder: Path, name: str) -> Iterator[str]:
+    """Yield the places where a package's files still have the name of the package that they were copied from."""
+    setup, cfg = folder / "setup.py", folder / "setup.cfg"
+    for number, line in enumerate(lenient_text(cfg).splitlines(), 1):
+        if (found := _SCRIPTS.match(line)) is not None and found[1] != name:
+            yield f"{cfg}:{number}: ROS 2 looks for the executables in lib/{name}: write $base/lib/{name}"
+    text = lenient_text(setup)
+    if re.search(r"[\"']resource/", text) and not (folder / "resource" / name).is_file():
+        marker = folder / "resource" / name
+        yield f"{setup} installs resource/{name}, which is not there: touch {marker}"
+    if (packages := _PACKAGES.search(text)) is not None:
+        number = text.count("\n", 0, packages.start()) + 1
+        for word in re.findall(r"[\"']([\w.]+)[\"']", packages[1]):
+            if not (folder / word.replace(".", "/")).is_dir() and "package_dir" not in text:
+                yield f"{setup}:{number}: there is no folder {word}, which packages names: write {name}"
 
 
 def _text(value: ast.expr, known: dict[str, str]) -> str | None:

@@ -192,6 +192,26 @@ def test_the_remedy_for_code_without_a_node() -> None:
     assert module._remedy([Lamp().frame(), frame()]) == module._REMEDY
 
 
+async def _never_pauses(see: Callable[[Frame], None]) -> None:
+    while True:
+        see(cast("Frame", sys._getframe()))
+
+
+def test_the_remedy_for_a_loop_that_cannot_pause() -> None:
+    """Its own line, and what to write there."""
+    seen: list[Frame] = []
+
+    def see(frame: Frame) -> None:
+        seen.append(frame)
+        raise StopAsyncIteration
+
+    with pytest.raises(StopAsyncIteration):
+        asyncio.run(_never_pauses(see))
+    told = f"test_watchdog.py:{_never_pauses.__code__.co_firstlineno + 1}: this loop never awaits, so no other handler"
+    assert module._of_loop(seen[0]).startswith(told)
+    assert module._of_loop(cast("Frame", sys._getframe())) == ""
+
+
 async def test_many_short_blocks(
     graphflow_runner: asyncio.Runner,
     watched: Watched,

@@ -81,6 +81,18 @@ async def test_a_clock_that_stands_still(graph: Graph) -> None:
     assert await unmet(graph) == []
 
 
+async def test_a_test_that_waits_in_real_time(graph: Graph) -> None:
+    """Its line is told, with the right call."""
+
+    async def waits() -> None:
+        await asyncio.sleep(2.0)
+
+    await graph.start(Talker())
+    line = waits.__code__.co_firstlineno + 1
+    way = "asyncio.sleep waits in real time, and the test's clock stood still; write await graph.clock.advance(2.0)"
+    assert await unmet(graph, test=waits) == [f"test_unmet.py:{line}: {way}"]
+
+
 async def test_a_lifecycle_node_that_nothing_activates(graph: Graph) -> None:
     """It is named with the transitions that are left."""
 

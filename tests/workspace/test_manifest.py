@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from graphflow.workspace.manifest import fault_of, name_fault
+from graphflow.workspace.manifest import fault_of, leftovers, name_fault
 
 
 @pytest.mark.parametrize(
@@ -63,3 +63,35 @@ def test_another_name_in_setup_py(tmp_path: Path, text: str, called: tuple[int, 
     file.write_text(text)
     told = called and f"{file}:{called[0]}: the package is called {called[1]!r} here, and 'lamp' in package.xml"
     assert name_fault(tmp_path, "lamp") == told
+
+
+SETUP = """
+from setuptools import setup
+
+setup(
+    name='lamp',
+    packages=['lump'],
+    data_files=[('share/ament_index/resource_index/packages', ['resource/' + package_name])],
+)
+"""
+
+
+def test_names_left_from_a_copy(tmp_path: Path) -> None:
+    """Each is told with its place, until it is the package's own."""
+    (tmp_path / "setup.py").write_text(SETUP)
+    (tmp_path / "setup.cfg").write_text(
+        "[develop]\nscript_dir=$base/lib/lump\n[install]\ninstall_scripts=$base/lib/lamp\n"
+    )
+    (tmp_path / "resource").mkdir()
+    (tmp_path / "resource" / "lump").touch()
+    assert [*leftovers(tmp_path, "lamp")] == [
+        f"{tmp_path}/setup.cfg:2: ROS 2 looks for the executables in lib/lamp: write $base/lib/lamp",
+        f"{tmp_path}/setup.py installs resource/lamp, which is not there: touch {tmp_path}/resource/lamp",
+        f"{tmp_path}/setup.py:6: there is no folder lump, which packages names: write lamp",
+    ]
+    (tmp_path / "setup.py").write_text(SETUP.replace("lump", "lamp"))
+    (tmp_path / "setup.cfg").write_text("[develop]\nscript_dir=$base/lib/lamp\n")
+    (tmp_path / "resource" / "lamp").touch()
+    (tmp_path / "lamp").mkdir()
+    assert [*leftovers(tmp_path, "lamp")] == []
+    assert [*leftovers(tmp_path / "none", "lamp")] == []

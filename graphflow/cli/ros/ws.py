@@ -76,7 +76,7 @@ def _interfaces_of(package: Package) -> list[str]:
 def _package_faults(workspace: Workspace) -> Iterator[str]:
     """Report faults of packages: in their own files, invalid names, and names that hide or repeat others."""
     from graphflow.workspace.executables import of_ros
-    from graphflow.workspace.manifest import fault_of, name_fault
+    from graphflow.workspace.manifest import fault_of, leftovers, name_fault
 
     packages = workspace.packages.values()
     for package in packages:
@@ -87,6 +87,8 @@ def _package_faults(workspace: Workspace) -> Iterator[str]:
     for package in packages:
         if (wrong_name := name_fault(package.folder, package.name)) is not None:
             yield wrong_name
+        else:
+            yield from leftovers(package.folder, package.name)
     for package in packages:
         if package.name in of_ros() and package.name not in workspace.replaced and package.import_roots:
             yield f"{package.folder} hides ROS 2's {package.name}; rename it, there and in its files"

@@ -6,6 +6,7 @@ attribute and by text; the others are derived from the message's fields, the cal
 
 from __future__ import annotations
 
+import ast
 import inspect
 import re
 import sys
@@ -70,6 +71,25 @@ def _missing_module(error: BaseException, frames: list[FrameType]) -> str:
     from graphflow.rclpy.hints.missing_modules import missing_module  # with the workspace, which few errors need
 
     return missing_module(error, frames)
+
+
+def _seconds(error: BaseException, frames: list[FrameType]) -> str:
+    """Show how the difference of two times in the line becomes a number."""
+    numbers = r"(operand|between).*('(Time|Duration)' and '(float|int)'|'(float|int)' and '(Time|Duration)')"
+    if not isinstance(error, TypeError) or not own(frames) or not re.search(numbers, str(error)):
+        return ""
+    line = line_of(frames).strip()
+    line = re.sub(r"^(?:el)?(?:if|while)\b(.*):$", r"\1", line).strip()
+    for node in ast.walk(ast.parse(line)):
+        match node:
+            case ast.BinOp(left=now, op=ast.Sub(), right=past) if ast.unparse(now).endswith("now()"):
+                for part in ast.walk(past):
+                    if isinstance(part, ast.Attribute) and part.attr == "nanoseconds":
+                        past = part.value
+                        break
+                span = f"({ast.unparse(now)} - {ast.unparse(past)})"
+                return f"the difference is a Duration: write {span}.nanoseconds / 1e9"
+    return ""
 
 
 def _stamp(error: BaseException, frames: list[FrameType]) -> str:
@@ -205,6 +225,7 @@ _RULES: tuple[Callable[[BaseException, list[FrameType]], str], ...] = (
     wrong_call,
     called_value,
     _stamp,
+    _seconds,
     _text,
     message_as_value,
     _without_terminal,

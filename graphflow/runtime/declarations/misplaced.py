@@ -148,6 +148,9 @@ def check_hooks(cls: type) -> None:
         raise DeclarationError(f"{place}: Python does not await {cls.__name__}.__init__; {way}")
     for name in ("on_start", "on_shutdown"):
         hook = vars(cls).get(name)
+        if (mark := getattr(hook, MARK, None)) is not None:
+            way = "leave out its decorator, or give a handler a name of its own"
+            raise DeclarationError(f"{mark.place}: the node itself calls {name}: {way}")
         if inspect.isfunction(hook) and not inspect.iscoroutinefunction(hook) and _returns_nothing(hook.__code__):
             place = Place(hook.__code__.co_filename, hook.__code__.co_firstlineno)
             raise DeclarationError(f"{place}: {name} is awaited; write async def {name}(self)")

@@ -17,6 +17,8 @@ from graphflow.runtime.mistakes.errors.attribute_errors import better_text
 
 _RUNS = re.compile(r"\b(run|running|serve|make|Graph|interface)\b\s*\(|\bContext\b")
 """Names in programs that run or inspect nodes in another way."""
+_MAIN_CALLS = re.compile(r"^if __name__ == .*:\n(?:[ \t].*\n|\n)*?[ \t]+[^#\n]*\w\(", re.MULTILINE)
+"""A main block that calls something, which is what the file is run for."""
 _IMPORTS = re.compile(r"^import graphflow\b(?!\.)", re.MULTILINE)
 _classes: list[str] = []
 """Node classes defined in the program's own file."""
@@ -105,7 +107,7 @@ def advice(file: Path, classes: list[str], made: Collection[str] = ()) -> str:
         return f"{text}\n" if text else ""
     if text := uncalled(source, str(file)):
         return f"{text}\n"
-    if _RUNS.search(source) or not classes:
+    if _RUNS.search(source) or _MAIN_CALLS.search(source) or not classes:
         return ""
     what = str(file) if len(classes) == 1 else f"MODULE:{classes[0]}"
     line = f"graphflow.run({classes[0]})"

@@ -69,8 +69,13 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: asyncio.get_running_loop(), "callbacks of rclpy run without asyncio"),
     (
         lambda n: n.get_clock().now() - n.get_clock().now() > 1.0,
-        "use the seconds of a time or duration: .nanoseconds / 1e9",
+        "the difference is a Duration: write (n.get_clock().now() - n.get_clock().now()).nanoseconds / 1e9",
     ),
+    (
+        lambda n: n.get_clock().now() - NOW.nanoseconds / 1e9,
+        "the difference is a Duration: write (n.get_clock().now() - NOW).nanoseconds / 1e9",
+    ),
+    (lambda n: NOW > 1.0, "use the seconds of a time or duration: .nanoseconds / 1e9"),  # type: ignore[operator]
     (lambda n: (NOW.nanoseconds / 1e9) ^ 2, "a power is written with **"),  # type: ignore[operator]
     (lambda n: min(NUMBERS[-1:1]), "NUMBERS[-1:1] is empty, since slices do not wrap: write ["),
     (lambda n: 2.0 * TICK, "a timer calls a callback that has an argument with a TimerInfo: leave the argument out"),

@@ -145,4 +145,7 @@ def test_hooks_are_awaited() -> None:
         made("def on_shutdown(self):\n        if self.name:\n            return\n        print('down')")
     with pytest.raises(DeclarationError, match=r"does not await N.__init__; write def __init__, and await in async"):
         made("async def __init__(self):\n        super().__init__()")
+    way = r"the node itself calls on_start: leave out its decorator, or give a handler a name of its own"
+    with pytest.raises(DeclarationError, match=way):
+        made("@timer(1.0)\n    async def on_start(self): ...")
     made("def on_start(self):\n        return self.begin()\n    async def begin(self): ...")

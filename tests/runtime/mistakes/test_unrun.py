@@ -98,6 +98,11 @@ def test_advice(tmp_path: Path) -> None:
     assert advice(file, ["A"]) == ""
     file.write_text(TALK)
     assert "graphflow run MODULE:A, or" in advice(file, ["A", "B"])
+    main = '\n\nif __name__ == "__main__":\n    # says its area\n    '
+    file.write_text(f"{TALK}{main}print(area())\n")
+    assert advice(file, ["A"]) == ""
+    file.write_text(f"{TALK}{main}A\n")
+    assert "runs nothing" in advice(file, ["A"])
     file.write_text("\ufeffdef main():\n    pass\n", encoding="utf-8")
     assert "main() is defined and never called" in advice(file, []), "a byte order mark is no part of the text"
 

@@ -34,6 +34,8 @@ def _after(body: list[ast.stmt], sending: set[str]) -> Iterator[tuple[int, str]]
     yield from _destroyed(body[:spun], spin)
     futures = {name for statement in body[:spun] for name in _assigned(statement)}
     for statement in body[spun + 1 :]:
+        if any(isinstance(part, ast.Call) and ast.unparse(part.func) == "rclpy.init" for part in nodes_in(statement)):
+            return  # a callback has ended the first part
         if read := next((name for name in _results(statement) if name in futures), None):
             text = f"{read}.result() runs only after Ctrl-C, since spin (line {line}) returns then"
             yield statement.lineno, f"{text}; write rclpy.spin_until_future_complete({node}, {read}) in line {line}"

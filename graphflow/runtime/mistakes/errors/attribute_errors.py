@@ -58,7 +58,7 @@ def better_text(error: AttributeError) -> str:
     if isinstance(thing, logging.Logger):
         return f"{error}; {_near(thing, name) or _NO_PUBLISHER}"
     if not isinstance(thing, AttributeHints):  # Python has its suggestion only where it prints the error itself
-        near = _near(type(thing), name)
+        near = "" if type(thing).__module__.startswith("rclpy.") else _near(type(thing), name)  # has hints of its own
         return f"{error}; {near}" if near else ""
     if text := text_instead(thing, name):
         return text

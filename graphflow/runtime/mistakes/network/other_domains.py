@@ -32,6 +32,8 @@ def look_elsewhere(
 
     def answered(tokens: list[str]) -> None:
         among = with_counterpart(lacking, tokens) if lacking else None
+        if here.domain and not is_hidden(node):  # two domains that were both chosen belong to two people
+            among = {0} if among is None else among & {0}
         report(elsewhere(here.domain, tokens, way, (node,), among))
 
     here.session.ask_tokens(ALL if lacking else NODES, ANSWER_LIMIT, answered)

@@ -116,6 +116,22 @@ def test_errors_of_others() -> None:
         assert str(error) == before
 
 
+@pytest.mark.parametrize(
+    ("use", "told"),
+    [
+        (lambda: [].apend(1), "'list' object has no attribute 'apend'; did you mean 'append'?"),  # type: ignore[attr-defined]
+        (lambda: NODE.log.inof("x"), "'NodeLogger' object has no attribute 'inof'; did you mean 'info'?"),
+        (lambda: NODE.log.publish("x"), "it is a logger, with info(...), warning(...) and error(...); self.log is "),
+    ],
+)
+def test_misspelt_methods_of_others(use: Any, told: str) -> None:
+    """The nearest one is suggested, as Python does where it prints an error itself."""
+    with pytest.raises(AttributeError) as caught:
+        use()
+    explain(caught.value)
+    assert told in str(caught.value)
+
+
 class Robot(Node):
     """Has a parameter."""
 

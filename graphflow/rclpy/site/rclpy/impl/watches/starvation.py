@@ -194,7 +194,7 @@ class HeldUp:
             who = "the program" if stack.thread is threading.main_thread() else thread
             spun = stack.spins or [executor for other in stacks() for executor in other.spins]
             way = _ONE_EXECUTOR if spun else _way_to_spin(level, node)
-            if spun and not any(executor.get_nodes() for executor in spun):
+            if spun and not internals_of(node).was_spun and not any(executor.get_nodes() for executor in spun):
                 way = f"its executor has no node: write executor.add_node({_name_of(level, node)}) before it spins"
             called = f"{_joined(kept)} {'cannot' if is_polled else 'should'} be called"
             text = f"{name} has not been spun {for_long}, and {called}: {who} is in {place}; {way}"
