@@ -78,7 +78,7 @@ def _hidden(module: ModuleType) -> str:
         return ""
     for root in (*_roots, str(Path.cwd())):
         file = Path(root, *module.__name__.split(".")).with_suffix(".py")
-        if file.is_file():
+        if file.is_file() and not file.samefile(module.__file__):
             return f"; {file.name} here is hidden by {module.__file__}: rename it, as in my_{file.name}"
     return ""
 
