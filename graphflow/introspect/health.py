@@ -15,6 +15,7 @@ from graphflow.machines.cache import ACTION_SEND_GOAL, GraphCache
 from graphflow.machines.matching import shared
 from graphflow.machines.near_topics import is_misspelt
 from graphflow.names import EVERYBODYS, is_hidden, nearest
+from graphflow.qos import History
 from graphflow.system import host_name
 from graphflow.wire.liveliness import Entity, Kind
 from graphflow.wire.process import ProcessToken
@@ -147,7 +148,8 @@ def _own_topics(cache: GraphCache) -> Iterator[Entity]:
 
 
 def _losses(cache: GraphCache, now: Counts) -> Iterator[str]:
-    newest = {(e.node_name, f"subscription {e.name}") for e in cache.endpoints(Kind.SUBSCRIPTION) if e.qos.depth == 1}
+    short = (e for e in cache.endpoints(Kind.SUBSCRIPTION) if e.qos.depth == 1 and e.qos.history is History.KEEP_LAST)
+    newest = {(e.node_name, f"subscription {e.name}") for e in short}
     for (node, part), numbers in now.items():
         received, dropped = numbers.get("received", 0.0), numbers.get("dropped", 0.0)
         dropped = 0.0 if (node, part) in newest else dropped  # it keeps the newest message on purpose

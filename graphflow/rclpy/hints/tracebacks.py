@@ -11,8 +11,9 @@ from contextlib import contextmanager, suppress
 from types import TracebackType
 from typing import Any
 
-from graphflow.analysis.user_code import is_ours, is_refusal, is_users, parts_of
+from graphflow.analysis.user_code import is_installed, is_ours, is_refusal, is_users, parts_of
 from graphflow.rclpy.hints import lookup
+from graphflow.runtime.callables import file_of
 from graphflow.runtime.mistakes.errors.attribute_errors import explain
 
 
@@ -24,8 +25,13 @@ def install() -> None:
 
 
 def advise_at_exit() -> None:
-    """Print the next step at exit for an error before `install`, as of an import, which Python prints as it is."""
-    atexit.register(_at_exit)
+    """Print the next step at exit for an error before `install`, as of an import, which Python prints as it is.
+
+    In the user's own program alone: pytest and others keep the errors that they have reported themselves.
+    """
+    file = file_of(sys.modules.get("__main__"))  # the attribute is gone at exit
+    if file and not (sys.flags.interactive or is_ours(file) or is_installed(file)):
+        atexit.register(_at_exit)
 
 
 def _at_exit() -> None:

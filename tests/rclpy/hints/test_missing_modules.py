@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -72,12 +73,11 @@ def test_programs_that_python_itself_runs(tmp_path: Path, lines: str, sentence: 
     (tmp_path / "src" / "lamp_kinds" / "package.xml").write_text("<package><name>lamp_kinds</name></package>")
     (tmp_path / "src" / "lamp_kinds" / "Light.msg").write_text("int8 level\n")
     (tmp_path / "program.py").write_text(lines)
-    code = (
-        f"import sys; sys.path.append({SITE!r}); import graphflow.rclpy.site_hook\n"
-        "exec(compile(open('program.py').read(), 'program.py', 'exec'))"
-    )
-    words = [sys.executable, "-c", code]
-    ended = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=30, check=False)
+    (tmp_path / "site").mkdir()
+    hook = f"import sys; sys.path.append({SITE!r}); import graphflow.rclpy.site_hook\n"
+    (tmp_path / "site" / "sitecustomize.py").write_text(hook)
+    words, env = [sys.executable, "program.py"], {**os.environ, "PYTHONPATH": str(tmp_path / "site")}
+    ended = subprocess.run(words, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=30, check=False)
     assert ended.returncode == 1
     told = ended.stderr.splitlines()[-1]
     assert told.endswith(sentence.format(tmp_path)), ended.stderr
