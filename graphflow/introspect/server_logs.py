@@ -23,6 +23,8 @@ BOUND = 1000
 """Messages on /rosout that are kept, the newest: one node may log a flood."""
 PATIENCE = 0.1
 """Seconds in which a line may still arrive after the response, which may overtake it."""
+OVERTAKING = 0.005
+"""Seconds by which a response may arrive before a line that was sent first: two threads receive them."""
 _WORDS = {30: "a warning", 40: "an error", 50: "a fatal error"}
 """The levels that are shown."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import time
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -16,6 +17,7 @@ from graphflow.cli.verbs import GraphVerbs, Verb
 from graphflow.cli.words import ValueCommand, pattern_option
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
+from graphflow.introspect import server_logs
 from graphflow.introspect.empty_hint import nothing_here
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.parameters import RemoteParameters, as_declared, read_value
@@ -198,9 +200,14 @@ def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> i
         remote = RemoteParameters(view, view.node(name), timeout)
         declared = remote.known(parameter)
         read = read_value(" ".join(value), 0 if declared.dynamic_typing else declared.type)
-        result = remote.set({parameter: _message(read, declared)})[0]
+        with view.hear(server_logs.TOPIC, server_logs.TYPE, server_logs.BOUND) as logs:
+            result = remote.set({parameter: _message(read, declared)})[0]
+            time.sleep(server_logs.OVERTAKING)
+            logged = server_logs.lines(server_logs.read(logs.take()), {view.node(name)}, result.reason)
     if result.successful:
         output.data("Set parameter successful" + (f": {result.reason}" if result.reason else ""))
+        for text in logged:  # such as that the node reads the parameter only at its start
+            output.talk(text)
         return exits.OK
     is_slip = result.reason.startswith("Wrong parameter type") and isinstance(read, float)  # ROS's words, without a way
     way = "; write an integer, or have the node declare it with a double, such as 1.0" if is_slip else ""

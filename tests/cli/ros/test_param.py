@@ -271,3 +271,37 @@ def test_a_double_for_an_integer_of_rclpy(machine: Machine, tmp_path: Path) -> N
     assert "Wrong parameter type, expected 'Type.INTEGER' got 'Type.DOUBLE'; write an integer, or have the node" in told
     assert "write an integer" not in machine.look("param", "set", "/clocked", "period", "true", code=1)
     assert program.end(signal.SIGINT) in (0, 130, -2)
+
+
+SPEEDY = """
+import rclpy
+from rclpy.node import Node
+
+
+class Speedy(Node):
+    def __init__(self):
+        super().__init__("speedy")
+        self.declare_parameter("speed", 1.0)
+        self.speed = self.get_parameter("speed").value
+        self.create_timer(0.1, lambda: self.get_logger().info(f"{self.speed}"))
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Speedy())
+
+
+main()
+"""
+
+
+@slow
+def test_what_the_node_logs_when_it_is_set(machine: Machine, tmp_path: Path) -> None:
+    """As that it has no effect."""
+    (tmp_path / "speedy.py").write_text(SPEEDY)
+    node = machine.start("run", "speedy.py", cwd=tmp_path)
+    node.wait_for("1.0")
+    told = machine.look("param", "set", "/speedy", "speed", "3.0")
+    assert told.startswith("Set parameter successful\n")
+    assert "meanwhile /speedy logged a warning: speedy.py:10: 'speed' is set without effect" in told
+    node.end(signal.SIGINT)
