@@ -444,7 +444,7 @@ class _Builder:
             self._watchdog.blocked_for,
             None,
             self._zid,
-            is_async=False,
+            is_async=run is not None,
             called=found.called,
         )
         return id_

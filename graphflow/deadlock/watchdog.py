@@ -18,6 +18,7 @@ from asyncio import AbstractEventLoop, BaseEventLoop
 from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import suppress
+from inspect import CO_COROUTINE
 from pathlib import Path
 from types import CodeType
 
@@ -38,7 +39,9 @@ LOOKS, TOO_MANY = 10, 7
 """Checks in a row, and the number of them that must find the loop blocked to be reported, if each block is shorter."""
 STACK_SHOWN = 6
 """Lines of the stack in a report, from the user's code inwards."""
-_REMEDY = "Await the slow part, or move it to a thread: await self.offload(...), or thread=True where it is no @task"
+_REMEDY = "Await the slow part, or move it to a thread: await self.offload(...)"
+_OF_DEF = "Move the slow part to a thread: thread=True where the handler is declared"
+"""The same in a `def`, which cannot await."""
 _OUTSIDE = "Await the slow part, or move it to a thread: await asyncio.to_thread(...)"
 """The same in code without a node at hand."""
 _HELD = "it was stopped, C code held it, or the machine is overloaded"
@@ -223,7 +226,10 @@ class Watchdog:
 
 
 def _remedy(frames: Iterable[Frame]) -> str:
-    return _REMEDY if any("self" in frame.f_locals for frame in frames if is_users_frame(frame)) else _OUTSIDE
+    users = [frame for frame in frames if is_users_frame(frame)]
+    if not any("self" in frame.f_locals for frame in users):
+        return _OUTSIDE
+    return _REMEDY if any(frame.f_code.co_flags & CO_COROUTINE for frame in users) else _OF_DEF
 
 
 def _of_loop(frame: Frame) -> str:

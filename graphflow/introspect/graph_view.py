@@ -18,6 +18,7 @@ from graphflow.errors import (
 )
 from graphflow.machines.cache import GraphCache
 from graphflow.machines.domains import COMMANDS, elsewhere
+from graphflow.machines.near_topics import by_type, did_you_mean_topic
 from graphflow.names import did_you_mean
 from graphflow.transport.base import Answer
 from graphflow.transport.client import Client, Hearing
@@ -104,7 +105,9 @@ class View:
         if not nodes or self.cache.endpoints(Kind.PUBLISHER, topic):
             return ""
         verb = "subscribes" if len(nodes) == 1 else "subscribe"
-        why = self.cache.absolute(topic) or self._stopped()
+        own = self.cache.endpoints(Kind.SUBSCRIPTION, topic)[0]
+        meant = did_you_mean_topic(own, by_type(self.cache, {own.type})).partition("; did you mean ")[2]
+        why = self.cache.absolute(topic) or (f"; did you mean {meant}" if meant else self._stopped())
         return f"; {' and '.join(nodes[:TAKEN_SHOWN])} {verb} to it, and nothing publishes it{why}"
 
     def service_types(self, name: str, wanted: str = "") -> list[str]:

@@ -48,11 +48,11 @@ def in_its_message(type_: type[base.Message], value: object) -> str:
     fields = type_.SCHEMA.fields
     if len(fields) != 1 or not isinstance(value, (str, int, float)):
         return ""
-    name, shown = fields[0].name, repr(value)
+    name, shown = fields[0].name, "..."  # not the value, which may be another one next time
     try:
         type_(**{name: value}).to_bytes()
     except EncodeError:
-        shown = repr(str(value)) if fields[0].type.base in schema.STRINGS else "..."
+        shown = "str(...)" if fields[0].type.base in schema.STRINGS else "..."
     return f"; write {type_.__name__}({name}={shown})"
 
 

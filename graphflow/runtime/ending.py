@@ -7,12 +7,13 @@ import logging
 import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
 from types import FrameType, FunctionType, MethodType
 from typing import Any, TypeAlias
 
-from graphflow.runtime.stop_limit import StopLimit, is_exiting, say
+from graphflow.runtime.stop_limit import StopLimit, is_exiting, place_of, say
 
 logger = logging.getLogger("graphflow")
 
@@ -76,7 +77,7 @@ def catch_signals(stop: asyncio.Event, *, is_limited: bool = False) -> Callable[
         now = time.monotonic()
         first = first or now
         if now - first > SAME_SIGNAL:
-            say("ended without cleanup: it was asked twice")
+            say(f"ended without cleanup: it was asked twice{_busy()}")
             os._exit(1)
         _begin_to_end(loop, stop, limit, number)
 
@@ -99,6 +100,11 @@ def catch_signals(stop: asyncio.Event, *, is_limited: bool = False) -> Callable[
             signal.signal(number, _ending_twice(handler) if is_limited and limit.is_started else handler)
 
     return restore
+
+
+def _busy() -> str:
+    """Return where the main thread is in the user's code, as the end of a line; "" if it is not in any."""
+    return "".join(f"; it was in {place}" for place in place_of(threading.get_ident()))
 
 
 def _ending_twice(former: _Handler) -> _Handler:

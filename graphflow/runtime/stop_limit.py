@@ -142,6 +142,7 @@ class StopLimit:
     def closed(self) -> None:
         """Note that all nodes have stopped; a limit that is not enforced ends here."""
         self._closed = True
+        logging.disable(logging.NOTSET)
         self._cancelled = not self._is_enforced
 
     @property
@@ -188,7 +189,7 @@ class StopLimit:
             due = next_step(times, is_reminded=is_reminded, is_interrupted=is_interrupted, interrupts=interrupts)
             if due is Step.REMIND:
                 is_reminded = True
-                _remind()
+                self._remind()
             elif self._is_enforced and due is Step.INTERRUPT:
                 say(f"{self._place()} blocks the event loop {total:.0f} s after the signal, and is interrupted")
                 is_interrupted, interrupts, silent = True, interrupts + 1, 0.0
@@ -246,6 +247,12 @@ class StopLimit:
             if not self.interrupts:
                 return
         self._interrupts = None
+
+    def _remind(self) -> None:
+        """Say what the process waits for; what a blocked loop logs, which would hide it, is left out from then on."""
+        if self._is_enforced and self._unanswered:
+            logging.disable(logging.INFO)
+        _remind()
 
     def _place(self) -> str:
         return next(place_of(self._main), "code outside this program")

@@ -188,8 +188,14 @@ def test_the_remedy_for_code_without_a_node() -> None:
         def frame(self) -> Frame:
             return cast("Frame", sys._getframe())
 
+        async def work(self) -> Frame:
+            return cast("Frame", sys._getframe())
+
     assert module._remedy([frame()]) == module._OUTSIDE
-    assert module._remedy([Lamp().frame(), frame()]) == module._REMEDY
+    assert module._remedy([Lamp().frame(), frame()]) == module._OF_DEF
+    with pytest.raises(StopIteration) as caught:
+        Lamp().work().send(None)
+    assert module._remedy([caught.value.value]) == module._REMEDY
 
 
 async def _never_pauses(see: Callable[[Frame], None]) -> None:

@@ -80,3 +80,13 @@ def test_an_executable_that_is_called_as_its_file(lamp: Path) -> None:
     assert plan.nodes[0].command[-1] == "blink"
     (told,) = plan.remarks
     assert told.endswith(": the executable is called blink; ROS 2 finds no blink.py")
+
+
+def test_a_name_with_a_slash(lamp: Path) -> None:
+    """It is a namespace and a name here; that ROS 2 refuses it is told."""
+    text = XML.format(name="blink", path="src/lamp/config/lamp.yaml").replace("exec=", 'name="left/lamp" exec=')
+    (lamp / "launch" / "a.launch.xml").write_text(text)
+    plan = load(lamp / "launch" / "a.launch.xml", [], {})
+    assert plan.nodes[0].name == "/left/lamp"
+    (told,) = plan.remarks
+    assert told.endswith(": ROS 2 takes no / in a node's name: write name 'lamp', and namespace 'left'")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING
 
 import click
@@ -10,6 +11,7 @@ from graphflow.cli import exits, output
 from graphflow.cli.verbs import GraphVerbs
 from graphflow.domain import domain_id
 from graphflow.errors import CallError, UsageFault
+from graphflow.introspect import server_logs
 from graphflow.introspect.empty_hint import nothing_here
 from graphflow.introspect.graph_view import View
 from graphflow.introspect.lifecycles import change, managed_nodes, state, transitions
@@ -115,11 +117,17 @@ def set_(name: str, transition: str, timeout: float) -> int:
             for t in ways.values():
                 output.talk(f"- {t.label} [{t.id}]")
             return exits.FAILED
-        if change(view, node, wanted, timeout):
-            output.data("Transitioning successful")
-            return exits.OK
-        output.talk("Transitioning failed")
-        output.error(f"{node} is {state(view, node, timeout).label}; its log says why: graphflow logs --node {node}")
+        with view.hear(server_logs.TOPIC, server_logs.TYPE, server_logs.BOUND) as logs:
+            if change(view, node, wanted, timeout):
+                output.data("Transitioning successful")
+                return exits.OK
+            output.talk("Transitioning failed")
+            time.sleep(server_logs.PATIENCE)
+            reasons = server_logs.lines(server_logs.read(logs.take()), {node})
+        why = "" if reasons else f"; its log says why: graphflow logs --node {node}, or its terminal"
+        output.error(f"{node} is {state(view, node, timeout).label}{why}")
+        for reason in reasons:
+            output.talk(reason)
         return exits.FAILED
 
 

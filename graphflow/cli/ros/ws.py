@@ -151,7 +151,7 @@ def _print_json(workspace: Workspace, interfaces: Mapping[str, list[str]], fault
 
 
 def _print(workspace: Workspace, interfaces: Mapping[str, list[str]], faults: list[str]) -> None:
-    from graphflow.workspace.unfound import inner_workspaces, outer_workspace
+    from graphflow.workspace.unfound import inner_workspaces, outer_workspace, uninstalled_files
 
     outer = outer_workspace(workspace)
     if outer is not None:
@@ -168,6 +168,8 @@ def _print(workspace: Workspace, interfaces: Mapping[str, list[str]], faults: li
     output.lines(output.columns(rows))
     for fault in faults:
         output.error(fault)
+    for lacks in filter(None, map(uninstalled_files, packages)):
+        output.talk(f"note: {lacks}")
     for name, place in workspace.replaced.items():
         output.talk(f"{place} is not imported: graphflow has {name} itself")
     if not faults and any(p.executables for p in packages):

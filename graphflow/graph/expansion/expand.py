@@ -374,6 +374,7 @@ class Expansion:
         if colon := colon_fault(key):
             self._problems.add(item.place, colon)
             return None
+        self._remark_on_slash(key, item)
         self._relative += not key.startswith("/") and not namespace.startswith("/")
         try:
             around = check_namespace(join(scope.namespace, namespace)) if namespace else scope.namespace
@@ -385,6 +386,13 @@ class Expansion:
         except InvalidName as error:
             self._problems.add(item.at, str(error))
             return None
+
+    def _remark_on_slash(self, key: str, item: Item) -> None:
+        """Remark on a name of a launch file that is a path, which only graph files may have."""
+        if "/" in key and item.at.file in self._problems.launch_files:
+            above, short = split(key if key.startswith("/") else f"/{key}")
+            text = f"ROS 2 takes no / in a node's name: write name {short!r}, and namespace {above.strip('/')!r}"
+            self._problems.remark(item.at, text)
 
     def _step(self, written: str, item: Item, scope: Scope) -> None:
         name = str(self._values.made(written, item.at, scope))

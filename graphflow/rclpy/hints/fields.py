@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import reprlib
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from types import FrameType
 from typing import Any
 
@@ -188,7 +190,17 @@ def no_message(error: BaseException, frames: list[FrameType]) -> str:
     if is_plain and isinstance(cls, type) and issubclass(cls, StrictMessage):
         fields = cls.SCHEMA.fields
         if len(fields) == 1 and isinstance(getattr(cls(), fields[0].name), type(given)):
-            return f"write {cls.__name__}({fields[0].name}={given!r})"
+            return f"write {cls.__name__}({fields[0].name}={_published(line_of(frames)) or '...'})"
+    return ""
+
+
+def _published(line: str) -> str:
+    """Return the expression that a line publishes; empty if it is not on the line alone."""
+    with suppress(SyntaxError):
+        for node in ast.walk(ast.parse(line.strip())):
+            match node:
+                case ast.Call(func=ast.Attribute(attr="publish"), args=[given]):
+                    return ast.unparse(given)
     return ""
 
 

@@ -107,7 +107,10 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _hint(self, name: str) -> str:
         if name in {field.name for field in self.type.SCHEMA.fields}:
-            return "a message has it: async for message in the subscription, or a method with @subscription"
+            return (
+                "it is the subscription, not its latest message: in a method with @subscription write "
+                f"self.latest = message, and read self.latest.{name}"
+            )
         return "keep it in a method with @subscription, as self.latest = message" if name in _NEWEST else ""
 
     def _open(self, key: str) -> None:

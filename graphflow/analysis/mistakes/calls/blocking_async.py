@@ -26,6 +26,9 @@ def blocking_async(code: ast.AST) -> Iterator[tuple[int, str]]:
                 call = ", ".join(["input", *map(ast.unparse, asking.args)])
                 text = "input() in an async def stops every handler of the process until a line comes"
                 yield asking.lineno, f"{text}; write await self.offload({call})"
+            case ast.While(test=ast.Constant(value=True | 1)) if (forgotten := _forgotten_in(node)) is not None:
+                text = f"{ast.unparse(forgotten)} without await does not pause, and this loop blocks the process"
+                yield forgotten.lineno, f"{text}; write await {ast.unparse(forgotten)}"
             case ast.While(test=ast.Constant(value=True | 1)):
                 inside = [part for part, _ in walk(node, into_functions=False)]
                 if not any(_pauses(part) or _sleeps(part) for part in inside):  # a sleep is told in its own line
@@ -47,6 +50,17 @@ def _input_in(loop: ast.While) -> ast.Call | None:
     for part, _ in walk(loop, into_functions=False):
         if isinstance(part, ast.Call) and isinstance(part.func, ast.Name) and part.func.id == "input":
             return part
+    return None
+
+
+def _forgotten_in(loop: ast.While) -> ast.Call | None:
+    """Return the sleep of a clock, or of asyncio, that a loop without a pause does not await; None if there is none."""
+    inside = [part for part, _ in walk(loop, into_functions=False)]
+    for part in inside:
+        match part:
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=owner, attr="sleep")) as call):
+                if last_name(owner) in ("clock", "asyncio") and not any(map(_pauses, inside)):
+                    return call
     return None
 
 

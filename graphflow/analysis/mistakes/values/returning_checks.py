@@ -17,7 +17,8 @@ def returning_checks(definition: ast.ClassDef) -> Iterator[tuple[int, str]]:
             match node:
                 case ast.Return(value=ast.expr() as value) if not is_nested(parents) and not _is_nothing(value):
                     text = f"{method.name} is a check, which refuses a value by raising"
-                    yield node.lineno, f'{text}: if ...: raise ValueError("why"), in place of return'
+                    way = "" if isinstance(value, ast.Constant) else f"if not ({ast.unparse(value)}): "
+                    yield node.lineno, f'{text}: {way}raise ValueError("why"), in place of return'
 
 
 def _is_check(decorator: ast.expr) -> bool:

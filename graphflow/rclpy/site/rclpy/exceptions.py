@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from graphflow.rclpy.hints import tracebacks
 from rclpy._rclpy_pybind11 import InvalidHandle
 
 if TYPE_CHECKING:
@@ -35,6 +36,7 @@ class NotInitializedException(Exception):
     """`rclpy.init` has not been called, or the context was shut down."""
 
     def __init__(self, message: str | None = None) -> None:
+        tracebacks.install()  # as `rclpy.init` would have
         text = "rclpy.init() has not been called"
         super().__init__(f"{text}: {message}" if message is not None else text)
 

@@ -155,7 +155,7 @@ REMARKS = (
     Remark(
         f"'{_SPANS}' and '{_SECONDS}'|'{_SECONDS}' and '{_SPANS}'",
         "",
-        "write a time span as Duration.of(0.5); its .seconds is a number",
+        "write a time span as Duration.of(seconds); its .seconds is a number",
     ),
     Remark(
         "^'Transform' object has no attribute '(transform|header|child_frame_id)'",

@@ -24,6 +24,15 @@ def test_a_sleep(pause: str) -> None:
     )
 
 
+@pytest.mark.parametrize("call", ["self.clock.sleep(0.5)", "asyncio.sleep(1)"])
+def test_a_loop_whose_pause_is_not_awaited(call: str) -> None:
+    """The pause is told, and not that the loop lacks one."""
+    [(line, text)] = told(f"while True:\n    self.out.publish(Twist())\n    {call}")
+    assert line == 5
+    assert text == f"{call} without await does not pause, and this loop blocks the process; write await {call}"
+    assert told(f"while True:\n    {call}\n    await self.other.call(request)") == []
+
+
 def test_a_loop_with_a_blocking_pause() -> None:
     """The pause alone is told, since its remedy is that of the loop."""
     [(line, text)] = told("while True:\n    self.out.publish(Twist())\n    time.sleep(1.0)")

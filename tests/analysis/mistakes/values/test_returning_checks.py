@@ -22,13 +22,21 @@ def _told(decorator: str, body: str) -> list[tuple[int, str]]:
     return list(returning_checks(definition))
 
 
-@pytest.mark.parametrize("value", ["0.0 <= speed <= 2.0", "False", "speed < 2", "1"])
-def test_a_check_that_returns_its_verdict(value: str) -> None:
+@pytest.mark.parametrize(
+    ("value", "way"),
+    [
+        ("0.0 <= speed <= 2.0", "if not (0.0 <= speed <= 2.0): "),
+        ("False", ""),
+        ("speed < 2", "if not (speed < 2): "),
+        ("1", ""),
+    ],
+)
+def test_a_check_that_returns_its_verdict(value: str, way: str) -> None:
     """The line is told with the form that refuses a value."""
     [(line, text)] = _told("speed.check", f"return {value}")
     assert line == 5
     assert text == (
-        'in_range is a check, which refuses a value by raising: if ...: raise ValueError("why"), in place of return'
+        f'in_range is a check, which refuses a value by raising: {way}raise ValueError("why"), in place of return'
     )
 
 

@@ -83,7 +83,10 @@ def _in_file(name: str, written: str, source: str, kind: Parameter.Type) -> str:
         if "LaunchConfiguration(" in line and kind in _PYTHON:
             return f"ParameterValue(LaunchConfiguration(...), value_type={_PYTHON[kind]})"
         return "" if "(" in line.partition(":")[2] else f'"{name}": {_TRUE_PYTHON.get(written, written)}'
-    if "$(" in (lines[number - 1] if number <= len(lines) else ""):
+    line = lines[number - 1] if number <= len(lines) else ""
+    if (argument := re.search(r"\$\(var (\w+)\)", line)) is not None and written:
+        return f'{argument[1]}:={written}, or add a type there, as in type="{_PYTHON.get(kind, "str")}"'
+    if "$(" in line:
         return ""
     if file.endswith((".xml", ".launch")):
         return f'value="{written}"'
