@@ -141,10 +141,8 @@ class _Class:
                     yield Finding(_grade(wait), Place(self.file, wait.line), text)
         for wait in self._waits("__init__", True, set()):
             if wait.holds_thread and not wait.spins:
-                way = _later(wait) if wait.client else "go on in the callback that it waits for, or in a timer"
+                way = _later(wait) if wait.client else "go on in a timer, or in the callback that it waits for"
                 text = f"__init__ waits in {wait.what}, and nobody spins the node before it is made: {way}"
-                if wait.what == "`while True`":
-                    text = f"__init__ does not return from {wait.what}, and nobody spins the node: make a timer of it"
                 yield Finding(_grade(wait), Place(self.file, wait.line), text)
 
     def unfollowed(self) -> Iterator[Place]:

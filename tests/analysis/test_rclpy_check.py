@@ -296,4 +296,4 @@ def test_a_constructor_that_waits_for_a_message(tmp_path: Path) -> None:
         "    def on_x(self, msg):\n        self.x = msg\n"
     )
     [found] = findings_in(file)
-    assert found.text.endswith("before it is made: go on in the callback that it waits for, or in a timer")
+    assert found.text.endswith("before it is made: go on in a timer, or in the callback that it waits for")

@@ -107,10 +107,7 @@ class TopicSubscription(Endpoint, Generic[M]):
 
     def _hint(self, name: str) -> str:
         if name in {field.name for field in self.type.SCHEMA.fields}:
-            return (
-                "it is the subscription, not its latest message: in a method with @subscription write "
-                f"self.latest = message, and read self.latest.{name}"
-            )
+            return f"it is no message: keep one in a method with @subscription, and read self.latest.{name}"
         return "keep it in a method with @subscription, as self.latest = message" if name in _NEWEST else ""
 
     def _open(self, key: str) -> None:

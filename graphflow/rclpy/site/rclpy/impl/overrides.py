@@ -85,7 +85,10 @@ def _in_file(name: str, written: str, source: str, kind: Parameter.Type) -> str:
         return "" if "(" in line.partition(":")[2] else f'"{name}": {_TRUE_PYTHON.get(written, written)}'
     line = lines[number - 1] if number <= len(lines) else ""
     if (argument := re.search(r"\$\(var (\w+)\)", line)) is not None and written:
-        return f'{argument[1]}:={written}, or add a type there, as in type="{_PYTHON.get(kind, "str")}"'
+        is_xml = file.endswith((".xml", ".launch"))
+        kinds = _PYTHON.get(kind, "str")
+        there = f'type="{kinds}"' if is_xml else f"type: {kinds}"
+        return f"{argument[1]}:={written}" + (f", or add there {there}" if is_xml or ".launch." in file else "")
     if "$(" in line:
         return ""
     if file.endswith((".xml", ".launch")):

@@ -59,10 +59,15 @@ def test_a_value_that_is_no_number() -> None:
     ("name", "lines", "way"),
     [
         ("t.launch.xml", '<param name="gain" value="7"/>', ': write value="7.0"'),
-        ("t.launch.xml", '<param name="gain" value="$(var gain)"/>', ""),
+        (
+            "t.launch.xml",
+            '<param name="gain" value="$(var gain)"/>',
+            ': write gain:=7.0, or add there type="float"',
+        ),
+        ("t.launch.yaml", "- {name: gain, value: $(var g)}", ": write g:=7.0, or add there type: float"),
         ("t.launch.yaml", "- {name: gain, value: 7}", ": write value: 7.0"),
         ("t.yaml", "params: {gain: 7}", ": write gain: 7.0"),
-        ("t.yaml", "params: {gain: $(var gain)}", ""),
+        ("t.yaml", "params: {gain: $(var gain)}", ": write gain:=7.0"),
         ("t.py", 'Node(parameters=[{"gain": 7}])', ': write "gain": 7.0'),
         (
             "t.py",
