@@ -56,7 +56,7 @@ def in_launch_file(missing: Path, launch_file: Path) -> str:
         return ""
     if launch_file.suffix != ".py":
         return f"$(find-pkg-share {package.name})/{found}"
-    return f"os.path.join(get_package_share_directory({package.name!r}), {found!r})"
+    return f"get_package_share_directory({package.name!r}) + '/{found}'"
 
 
 def _installed(package: Package) -> Iterator[tuple[PurePosixPath, Path]]:

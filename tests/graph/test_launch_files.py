@@ -48,7 +48,7 @@ def test_a_path_that_begins_at_the_package(lamp: Path, path: str) -> None:
     (told,) = load(file, [], {}).remarks
     place = path if path == "lamp.yaml" else f"src/lamp/launch/{path}"  # a folder that is there is a better one
     assert told.endswith(f"there is no file {place}; write $(find-pkg-share lamp)/config/lamp.yaml")
-    right = "os.path.join(get_package_share_directory('lamp'), 'config/lamp.yaml')"
+    right = "get_package_share_directory('lamp') + '/config/lamp.yaml'"
     assert in_launch_file(file.parent / path, file.with_suffix(".py")) == right
 
 

@@ -130,6 +130,8 @@ def _after_init(wait: SetBy, graph: WaitGraph) -> list[str]:
     others = " or ".join(_handlers(wait.queues, graph))
     is_value = re.fullmatch(r"self\.\w+", wait.what) is not None
     timer = f"or in a timer, which returns at once until {wait.what} is set" if is_value else "or in a timer"
+    if wait.what.startswith("the transform "):  # which tf2's own subscriptions hear
+        return ["look it up in a timer, and without a timeout"]
     return [f"go on in {others},", timer] if others else []
 
 

@@ -164,10 +164,11 @@ def _of_goal(cls: type, name: str, frames: list[FrameType]) -> str:
     if users and "self" not in users[-1].f_locals:  # the program's main function, where nothing else spins
         ways = "result_future = goal_handle.get_result_async(), rclpy.spin_until_future_complete(node, result_future)"
         return f"this is the goal's handle, and the result comes later: {ways}, result_future.result().result{end}"
+    got = "goal_handle = future.result(), " if "future.result()." in line_of(frames) else ""
     return (
-        "this is the goal's handle, and the result comes later: "
-        "goal_handle.get_result_async().add_done_callback(self.on_result), and in a new method "
-        f"on_result(self, future): future.result().result{end}"
+        f"this is the goal's handle, and the result comes later: {got}"
+        "goal_handle.get_result_async().add_done_callback(self.on_result); what uses the result, and rclpy.shutdown(), "
+        f"moves into a new method on_result(self, future), where it is future.result().result{end}"
     )
 
 

@@ -61,5 +61,7 @@ class Sending(Unentered[H]):
         def __getattr__(self, name: str) -> object:
             """Raise AttributeError: the goal has not been sent yet."""
             self._is_known = True
-            text = f"the goal is not sent yet, and has no {name!r}: write `async with client.send(goal) as sent:`"
+            from graphflow.runtime.mistakes.unsent import sending_line  # most programs never need it
+
+            text = f"the goal is not sent yet, and has no {name!r}: {sending_line(self._place)}"
             raise AttributeError(text, name=name, obj=self)

@@ -37,7 +37,9 @@ def wrong_return(
         # A handler may be given its response to fill in, as in rclpy.
         what = given[1] if len(given) == 2 and given[1].startswith("res") else f"{name_of(wanted)}(...)"
         return TypeError(f"it returned None: end it with return {what}{where}")
-    return TypeError(f"it returned {returned!r}, not {name_of(wanted)}(...){where}")
+    fields = wanted.SCHEMA.fields
+    first = f"{fields[0].name}=..." if fields else ""
+    return TypeError(f"it returned {returned!r}, not {name_of(wanted)}({first}){where}")
 
 
 def _not_awaited(returned: object, wanted: type[Message], callback: Callable[..., object], where: str) -> str:

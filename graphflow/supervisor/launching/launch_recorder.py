@@ -154,6 +154,8 @@ def _instead(name: str, known: set[str]) -> str:
     Args:
         known: The names that are defined there.
     """
+    if name in sys.stdlib_module_names and name not in known:
+        return f"; write import {name}"
     near = name if name in _HOMES else nearest(name, [*known, *_HOMES], cutoff=0.8)
     if near is None:
         return ""

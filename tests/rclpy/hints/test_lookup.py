@@ -255,7 +255,8 @@ def test_a_field_of_the_result_in_the_handle(name: str, sentence: str) -> None:
 
     start = "" if sentence.endswith("?") else "this is the goal's handle, and the result comes later: "
     asking = "goal_handle.get_result_async().add_done_callback(self.on_result)"
-    later = f"{asking}, and in a new method on_result(self, future): " if start else ""
+    moved = "what uses the result, and rclpy.shutdown(), moves into a new method on_result(self, future), where it is "
+    later = f"{asking}; {moved}" if start else ""
     assert hint_of(Asker().read) == f"{start}{later}{sentence}"
     spun = "result_future = goal_handle.get_result_async(), rclpy.spin_until_future_complete(node, result_future)"
     expected = f"{start}{spun}, result_{sentence}" if start else sentence

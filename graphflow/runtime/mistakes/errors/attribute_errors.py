@@ -124,8 +124,16 @@ def _setter(thing: object, name: str, running: Collection[CodeType]) -> str:
                     return f"{where} sets it, and nothing calls that: write __init__"
                 if inspect.getattr_static(type(thing), word) is not method:
                     return f"{where} sets it, and {type(thing).__name__} replaces that: call super().{word}() there"
+                if word.startswith("on_") and (meant := _hook_meant(type(thing), word)):
+                    return f"{where} sets it, and nothing calls that; {meant}"
                 return f"{where} sets it, and has not run: have it called before, or write {name} = None in the class"
     return ""
+
+
+def _hook_meant(cls: type, word: str) -> str:
+    from graphflow.runtime.mistakes.source.idle_methods import hook_meant  # only after a mistake
+
+    return hook_meant(cls, word)
 
 
 def _written_to(error: AttributeError) -> tuple[object, str | None]:

@@ -59,7 +59,7 @@ def _way(cls: type, method: FunctionNode, space: dict[str, object]) -> str:
     kind = _received(arguments[0], space) if len(arguments) == 1 else ""
     is_of_another = bool(arguments) and arguments[0].annotation is not None  # and not of a message
     if kind or (_LIKE_A_HANDLER.match(method.name) and len(arguments) <= 1 and not is_of_another):
-        if not arguments and (hook := _hook_meant(cls, method.name)):
+        if not arguments and (hook := hook_meant(cls, method.name)):
             return f"; {hook}"
         decorator = _DECORATORS.get(kind) or (_DECORATORS["message"] if arguments else "@timer(1.0)")
         return f", which looks like a handler: declare it, as with {decorator} above it"
@@ -77,7 +77,7 @@ def _used_by(method: FunctionNode, cls: type) -> str:
     return ""
 
 
-def _hook_meant(cls: type, name: str) -> str:
+def hook_meant(cls: type, name: str) -> str:
     """Return the node method (of lifecycle nodes, too) that a name seems to mean; "" if none."""
     hooks = [attribute for attribute in dir(cls) if attribute.startswith("on_") and attribute != name]
     near = nearest(name, [hook for hook in hooks if hook in _HOOKS or hook in _OF_LIFECYCLES], cutoff=0.75)

@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import pytest
 
-from graphflow import Node, Param
+from graphflow import LifecycleNode, Node, Param
 from graphflow.msgs.example_interfaces.srv import AddTwoInts
 from graphflow.msgs.sensor_msgs.msg import Image
 from graphflow.msgs.std_msgs.msg import String
@@ -222,6 +222,22 @@ def test_attributes_that_a_method_sets_later() -> None:
         begin = f"'Follower' object has no attribute '{name}'" + text.format(Follower.moved.__code__.co_firstlineno)
         assert str(caught.value).startswith(begin)
         assert text or str(caught.value) == begin
+
+
+class Camera(LifecycleNode):
+    """Sets an attribute in a method whose name is almost a hook's."""
+
+    async def on_configured(self) -> None:
+        self.device = "video0"
+
+
+def test_an_attribute_that_no_hook_sets() -> None:
+    """The hook is named, and not a first value, which would hide the mistake."""
+    camera: Any = Camera()
+    with pytest.raises(AttributeError) as caught:
+        _ = camera.device
+    explain(caught.value)
+    assert str(caught.value).endswith(" sets it, and nothing calls that; did you mean on_configure?")
 
 
 class Rover(Follower):
