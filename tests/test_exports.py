@@ -73,7 +73,7 @@ def test_an_unknown_name_is_an_attribute_error() -> None:
     ("name", "told"),
     [
         ("Nod", "graphflow has no Nod; did you mean 'Node'?"),
-        ("Timer", "graphflow has no Timer; the decorator is written @timer"),
+        ("Task", "graphflow has no Task; the decorator is written @task"),
         ("Run", "graphflow has no Run; the function is written run"),
         ("nothing_alike", "cannot import name 'nothing_alike' from 'graphflow'"),
     ],
