@@ -18,6 +18,7 @@ from graphflow.msgs.base import Message, no_field
 from graphflow.names import nearest
 from graphflow.runtime.callables import code_of
 from graphflow.runtime.mistakes.errors import constructor_errors
+from graphflow.runtime.mistakes.hooks import hook_meant
 from graphflow.runtime.mistakes.rclpy_words import AttributeHints, hint_of, text_instead, translation
 
 _NO_ATTRIBUTE = re.compile(r"'(?P<kind>\w+)' object has no attribute '(?P<name>\w+)'(?P<more> and no __dict__ .*)?")
@@ -124,16 +125,10 @@ def _setter(thing: object, name: str, running: Collection[CodeType]) -> str:
                     return f"{where} sets it, and nothing calls that: write __init__"
                 if inspect.getattr_static(type(thing), word) is not method:
                     return f"{where} sets it, and {type(thing).__name__} replaces that: call super().{word}() there"
-                if word.startswith("on_") and (meant := _hook_meant(type(thing), word)):
+                if word.startswith("on_") and (meant := hook_meant(type(thing), word)):
                     return f"{where} sets it, and nothing calls that; {meant}"
                 return f"{where} sets it, and has not run: have it called before, or write {name} = None in the class"
     return ""
-
-
-def _hook_meant(cls: type, word: str) -> str:
-    from graphflow.runtime.mistakes.source.idle_methods import hook_meant  # only after a mistake
-
-    return hook_meant(cls, word)
 
 
 def _written_to(error: AttributeError) -> tuple[object, str | None]:

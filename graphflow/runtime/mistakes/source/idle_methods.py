@@ -10,19 +10,13 @@ from graphflow.analysis.attribute_uses import is_own
 from graphflow.analysis.syntax import FunctionNode, nodes_in
 from graphflow.analysis.words import methods_in, prefixes_in
 from graphflow.errors import Place
-from graphflow.names import nearest
 from graphflow.runtime.declarations import declared
 from graphflow.runtime.declarations.declare import Param
+from graphflow.runtime.mistakes.hooks import hook_meant
 from graphflow.runtime.mistakes.source.project_words import is_in_other_files, other_modules
 from graphflow.runtime.mistakes.source.wrong_fields import message_of
 
 _LIKE_A_HANDLER = re.compile(r"on_|handle_|.*(callback|_cb|_handler)$|(tick|timer)$")
-_HOOKS = {
-    "on_start": ("init", "begin", "startup", "ready", "open", "run"),
-    "on_shutdown": ("stop", "end", "exit", "close", "destroy", "finish", "cleanup"),
-}
-"""The methods of every node, and other names for them."""
-_OF_LIFECYCLES = ("on_configure", "on_activate", "on_deactivate", "on_cleanup", "on_error")
 _DECORATORS = {
     "message": '@subscription(Type, "topic")',
     "request": '@service(Type, "name")',
@@ -75,16 +69,6 @@ def _used_by(method: FunctionNode, cls: type) -> str:
             case ast.Call(func=ast.Attribute(value=ast.Attribute(attr=name) as end)) if name in ends and is_own(end):
                 return name
     return ""
-
-
-def hook_meant(cls: type, name: str) -> str:
-    """Return the node method (of lifecycle nodes, too) that a name seems to mean; "" if none."""
-    hooks = [attribute for attribute in dir(cls) if attribute.startswith("on_") and attribute != name]
-    near = nearest(name, [hook for hook in hooks if hook in _HOOKS or hook in _OF_LIFECYCLES], cutoff=0.75)
-    meant = near or next((hook for hook, others in _HOOKS.items() if name.removeprefix("on_") in others), None)
-    if name not in _OF_LIFECYCLES:
-        return f"did you mean {meant}?" if meant else ""
-    return f"derive {cls.__name__} from LifecycleNode, whose nodes are configured and activated, or write on_start"
 
 
 def _received(argument: ast.arg, space: dict[str, object]) -> str:
