@@ -19,11 +19,10 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from inspect import CO_COROUTINE
-from pathlib import Path
 from types import CodeType
 
 from graphflow.analysis.frames import Frame, stack_of
-from graphflow.analysis.user_code import called_by_loop, innermost, is_ours, is_users, is_users_frame
+from graphflow.analysis.user_code import called_by_loop, innermost, is_ours, is_users, is_users_frame, short_place
 
 logger = logging.getLogger("graphflow")
 
@@ -240,7 +239,7 @@ def _of_loop(frame: Frame) -> str:
     file, lines = frame.f_code.co_filename, {line for *_, line in frame.f_code.co_lines()}
     with suppress(OSError, SyntaxError, ValueError):  # its source is not available
         found = [(line, text) for line, text in blocking_async(syntax_of(file).module) if line in lines]
-        return next((f"{Path(file).name}:{line}: {text}" for line, text in found), "")
+        return next((f"{short_place(file, line)}: {text}" for line, text in found), "")
     return ""
 
 

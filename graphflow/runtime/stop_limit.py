@@ -128,6 +128,8 @@ class StopLimit:
         """The error that the signal handler must raise."""
         self._unanswered = False
         self._changed = self._closed = self._cancelled = False
+        self._former_level: int | None = None
+        """The level up to which the program had disabled logging, while INFO is disabled here."""
         self.is_started = False
 
     def start(self, number: int) -> None:
@@ -142,7 +144,8 @@ class StopLimit:
     def closed(self) -> None:
         """Note that all nodes have stopped; a limit that is not enforced ends here."""
         self._closed = True
-        logging.disable(logging.NOTSET)
+        if self._former_level is not None:
+            logging.disable(self._former_level)
         self._cancelled = not self._is_enforced
 
     @property
@@ -251,7 +254,8 @@ class StopLimit:
     def _remind(self) -> None:
         """Say what the process waits for; what a blocked loop logs, which would hide it, is left out from then on."""
         if self._is_enforced and self._unanswered:
-            logging.disable(logging.INFO)
+            self._former_level = logging.root.manager.disable
+            logging.disable(max(logging.INFO, self._former_level))
         _remind()
 
     def _place(self) -> str:

@@ -12,7 +12,9 @@ from graphflow.reading import found_text, lenient_text
 
 _SCRIPTS = re.compile(r"\s*(?:script[-_]dir|install[-_]scripts)\s*=\s*\$base/lib/([\w.-]+)\s*$")
 _PACKAGES = re.compile(r"\bpackages\s*=\s*\[([^\]]*)\]")
-"""A literal list of a setup.py."""
+"""A list of a setup.py."""
+_LITERAL = re.compile(r"[\"']([A-Za-z_][\w.]*)[\"']\Z")
+"""An element of it that is nothing but a name."""
 _MISMATCHED = expat.errors.codes[expat.errors.XML_ERROR_TAG_MISMATCH]
 
 
@@ -48,7 +50,7 @@ def _unclosed(end: str, is_open: list[tuple[str, int]]) -> tuple[str, int]:
     """
     name = end.partition(">")[0].strip()
     around = next((place for place, (other, _) in reversed([*enumerate(is_open)]) if other == name), len(is_open) - 2)
-    return is_open[around + 1]
+    return is_open[min(around + 1, len(is_open) - 1)]
 
 
 def name_fault(folder: Path, name: str) -> str | None:
@@ -78,12 +80,13 @@ def leftovers(folder: Path, name: str) -> Iterator[str]:
         if (found := _SCRIPTS.match(line)) is not None and found[1] != name:
             yield f"{cfg}:{number}: ROS 2 looks for the executables in lib/{name}: write $base/lib/{name}"
     text = lenient_text(setup)
-    if re.search(r"[\"']resource/", text) and not (folder / "resource" / name).is_file():
-        marker = folder / "resource" / name
+    marker = folder / "resource" / name
+    if re.search(rf"resource/(?:[\"']\s*\+|\{{|{re.escape(name)}[\"'])", text) and not marker.is_file():
         yield f"{setup} installs resource/{name}, which is not there: touch {marker}"
     if (packages := _PACKAGES.search(text)) is not None:
         number = text.count("\n", 0, packages.start()) + 1
-        for word in re.findall(r"[\"']([\w.]+)[\"']", packages[1]):
+        literals = (_LITERAL.match(element.strip()) for element in packages[1].split(","))
+        for word in (literal[1] for literal in literals if literal is not None):
             if not (folder / word.replace(".", "/")).is_dir() and "package_dir" not in text:
                 yield f"{setup}:{number}: there is no folder {word}, which packages names: write {name}"
 

@@ -461,7 +461,10 @@ async def test_what_changes_while_it_is_looked_at(graphflow_runner: asyncio.Runn
     assert scene.snapshot.take().queues == {}
 
 
-async def test_a_loop_that_is_blocked(graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("is_async", [False, True])
+async def test_a_loop_that_is_blocked(
+    graphflow_runner: asyncio.Runner, monkeypatch: pytest.MonkeyPatch, is_async: bool
+) -> None:
     """Who keeps it is an activity, with the call that it waits for in vain; seen from other threads only."""
     scene = Scene()
     found: list[Any] = []
@@ -474,12 +477,15 @@ async def test_a_loop_that_is_blocked(graphflow_runner: asyncio.Runner, monkeypa
                 found.append(pool.submit(scene.snapshot.take).result())  # here
             assert scene.snapshot.take().blocked == {}
 
-    await begin(scene.stage.handler(scene.actor, "on_go", blocks), "message")
+    async def runs(message: object) -> None:
+        blocks(message)
+
+    await begin(scene.stage.handler(scene.actor, "on_go", runs if is_async else blocks), "message")
 
     [graph] = found
     [view] = graph.activities.values()
     assert graph.blocked == {scene.zid: view.id}
-    assert (view.label, view.wait, view.age, view.is_async) == ("subscription on_go", ADD, 3.0, False)
+    assert (view.label, view.wait, view.age, view.is_async) == ("subscription on_go", ADD, 3.0, is_async)
     assert (view.place.file, view.function) == (__file__, "blocks")
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import logging
 import os
 import signal
 import sys
@@ -12,7 +14,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from graphflow.runtime.stop_limit import Step, Times, hindrances, is_reading, next_step
+from graphflow.runtime.stop_limit import Step, StopLimit, Times, hindrances, is_reading, next_step
 from tests.cases import slow
 from tests.conftest import Machine
 from tests.until import until
@@ -339,3 +341,25 @@ def test_a_process_pool_at_work_is_named(tmp_path: Path) -> None:
         work.result(30.0)
     assert len(told) == 1
     assert told[0].startswith("the work of a process pool, processes ")
+
+
+@pytest.mark.parametrize("former", [logging.NOTSET, logging.WARNING])
+def test_what_a_blocked_loop_logs_is_left_out(former: int) -> None:
+    """From the reminder until the nodes have stopped; what the program itself has disabled stays so."""
+    loop = asyncio.new_event_loop()
+    logger = logging.getLogger("blocked")
+    logger.setLevel(logging.INFO)
+    logging.disable(former)
+    try:
+        limit = StopLimit(loop, is_enforced=True)
+        limit._remind()
+        assert logger.isEnabledFor(logging.INFO) is (former < logging.INFO)  # it answers
+        assert limit._ping()  # which nothing answers
+        limit._remind()
+        assert not logger.isEnabledFor(logging.INFO)
+        assert logger.isEnabledFor(logging.ERROR)
+        limit.closed()
+        assert logging.root.manager.disable == former
+    finally:
+        logging.disable(logging.NOTSET)
+        loop.close()

@@ -95,3 +95,7 @@ def test_names_left_from_a_copy(tmp_path: Path) -> None:
     (tmp_path / "lamp").mkdir()
     assert [*leftovers(tmp_path, "lamp")] == []
     assert [*leftovers(tmp_path / "none", "lamp")] == []
+    more = "packages=[package_name, package_name + '.parts'], data_files=[('share/lamp', ['resource/lamp.png'])]"
+    (tmp_path / "resource" / "lamp").unlink()
+    (tmp_path / "setup.py").write_text(f"setup(name='lamp', {more})\n")
+    assert [*leftovers(tmp_path, "lamp")] == []

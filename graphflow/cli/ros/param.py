@@ -197,13 +197,14 @@ def set_(name: str, parameter: str, value: tuple[str, ...], timeout: float) -> i
     with View(domain_id()) as view:
         if not value:
             raise _lacking(view, timeout, "set", name, parameter)
-        remote = RemoteParameters(view, view.node(name), timeout)
+        node = view.node(name)
+        remote = RemoteParameters(view, node, timeout)
         declared = remote.known(parameter)
         read = read_value(" ".join(value), 0 if declared.dynamic_typing else declared.type)
         with view.hear(server_logs.TOPIC, server_logs.TYPE, server_logs.BOUND) as logs:
             result = remote.set({parameter: _message(read, declared)})[0]
             time.sleep(server_logs.OVERTAKING)
-            logged = server_logs.lines(server_logs.read(logs.take()), {view.node(name)}, result.reason)
+            logged = server_logs.lines(server_logs.read(logs.take()), {node}, result.reason)
     if result.successful:
         output.data("Set parameter successful" + (f": {result.reason}" if result.reason else ""))
         for text in logged:  # such as that the node reads the parameter only at its start

@@ -106,6 +106,9 @@ def test_echo_of_a_topic_that_has_only_subscribers(machine: Machine) -> None:
     text = machine.run("topic", "echo", "/chatter", "--timeout", "0.05", code=4)
     published = "topic [/chatter] does not appear to be published yet"
     assert f"WARNING: {published}; /listener subscribes to it, and nothing publishes it" in text
+    machine.start("run", "talker", "-r", "__ns:=/lab").wait_for("Publishing")
+    text = machine.run("topic", "echo", "/chatter", "--timeout", "0.05", code=4)
+    assert "nothing publishes it; did you mean '/lab/chatter', which /lab/talker publishes?" in text
 
 
 @pytest.mark.parametrize(

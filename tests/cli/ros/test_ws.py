@@ -159,6 +159,16 @@ def test_what_ros_2_would_not_build(machine: Machine, workspace: Path) -> None:
     assert f"{workspace}/src/std_msgs hides ROS 2's std_msgs" in told
 
 
+def test_what_ros_2_would_not_find(machine: Machine, workspace: Path) -> None:
+    """A name that is left of the package that was copied is a fault, and a folder that is not installed a note."""
+    (workspace / "src/lamp/launch").mkdir()
+    (workspace / "src/lamp/launch/lamp.launch.py").touch()
+    assert "note: src/lamp/setup.py does not install launch/" in machine.look("ws", cwd=workspace)
+    (workspace / "src/lamp/setup.cfg").write_text("[develop]\nscript_dir=$base/lib/lump\n")
+    told = machine.look("ws", cwd=workspace, code=1)
+    assert f"error: {workspace}/src/lamp/setup.cfg:2: ROS 2 looks for the executables in lib/lamp" in told
+
+
 def test_interfaces_that_cmake_does_not_name(machine: Machine, workspace: Path) -> None:
     """ROS 2 would not build them; a pattern may name any."""
     folder = workspace / "src" / "dim_interfaces"

@@ -108,7 +108,7 @@ WRONG: list[tuple[Callable[[Any], Any], str]] = [
     (lambda n: [Parameter("n", value=6)].name, "that is a list of parameters: for parameter in parameters"),  # type: ignore[attr-defined]
     (lambda n: n.set_parameters({"n": 6}), "write set_parameters([Parameter('name', value=6)])"),
     (lambda n: n.create_publisher(String, "chat", 1).publish(String), "that is a class, not a message: write String()"),
-    (lambda n: n.create_publisher(String, "chat", 1).publish("hello"), "write String(data="),
+    (lambda n: n.create_publisher(String, "chat", 1).publish("hel" + "lo"), "write String(data='hel' + 'lo')"),
     (lambda n: Imu(), "write from sensor_msgs.msg import Imu"),  # type: ignore[name-defined]  # noqa: F821
     (lambda n: n.create_timer(n.declare_parameter("rate", 1.0), print), "a parameter's value is in .value"),
     (lambda n: (n.destroy_node(), n.get_name()), "it was already destroyed, by itself or with its node"),

@@ -56,6 +56,15 @@ def test_a_type_that_another_package_of_the_workspace_has(tmp_path: Path, monkey
     assert where_to_have("lamp_kinds.msg", find_workspace(tmp_path), wanted) == own
 
 
+def run_by_python(folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run `program.py` of a folder by Python itself, in an environment in which `rclpy enable` was run."""
+    (folder / "site").mkdir()
+    hook = f"import sys; sys.path.append({SITE!r}); import graphflow.rclpy.site_hook\n"
+    (folder / "site" / "sitecustomize.py").write_text(hook)
+    words, env = [sys.executable, "program.py"], {**os.environ, "PYTHONPATH": str(folder / "site")}
+    return subprocess.run(words, cwd=folder, env=env, capture_output=True, text=True, timeout=30, check=False)
+
+
 @pytest.mark.parametrize(
     ("lines", "sentence"),
     [
@@ -73,11 +82,16 @@ def test_programs_that_python_itself_runs(tmp_path: Path, lines: str, sentence: 
     (tmp_path / "src" / "lamp_kinds" / "package.xml").write_text("<package><name>lamp_kinds</name></package>")
     (tmp_path / "src" / "lamp_kinds" / "Light.msg").write_text("int8 level\n")
     (tmp_path / "program.py").write_text(lines)
-    (tmp_path / "site").mkdir()
-    hook = f"import sys; sys.path.append({SITE!r}); import graphflow.rclpy.site_hook\n"
-    (tmp_path / "site" / "sitecustomize.py").write_text(hook)
-    words, env = [sys.executable, "program.py"], {**os.environ, "PYTHONPATH": str(tmp_path / "site")}
-    ended = subprocess.run(words, cwd=tmp_path, env=env, capture_output=True, text=True, timeout=30, check=False)
+    ended = run_by_python(tmp_path)
     assert ended.returncode == 1
     told = ended.stderr.splitlines()[-1]
     assert told.endswith(sentence.format(tmp_path)), ended.stderr
+
+
+@slow
+def test_a_program_that_has_not_initialized(tmp_path: Path) -> None:
+    """Its traceback has its own lines alone, as after `rclpy.init`."""
+    (tmp_path / "program.py").write_text("import rclpy\nfrom rclpy.node import Node\nNode('lamp')\n")
+    told = run_by_python(tmp_path).stderr.splitlines()
+    assert [line.split(",")[0] for line in told if line.startswith("  File ")] == [f'  File "{tmp_path}/program.py"']
+    assert told[-1].endswith("NotInitializedException: rclpy.init() has not been called: cannot create node")

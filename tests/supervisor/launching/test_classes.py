@@ -297,6 +297,30 @@ def test_classes_whose_nodes_cannot_be_made(project: Path) -> None:
     assert problem.message.startswith(f"{project}/machines/needy.py:2: Needy.__init__ needs port, and nodes are made")
 
 
+def test_a_module_of_that_very_name(project: Path) -> None:
+    """In a subfolder, it is meant rather than a similar one of the project's own folder."""
+    (project / "robot1.py").touch()
+    (project / "machines" / "robot2.py").touch()
+    assert classes.nearest_module("robot2", str(project)) == "machines.robot2"
+
+
+def test_a_file_of_the_working_directory_that_is_hidden(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It may lie in a folder of the project."""
+    (project / "machines" / "graphflow.py").write_text("class Robot: ...\n")
+    monkeypatch.chdir(project / "machines")
+    with pytest.raises(GraphflowError, match=r"graphflow.py here is hidden by .*: rename it, as in my_graphflow.py"):
+        import_class("graphflow:Robot")
+
+
+@pytest.mark.parametrize("module", ["rlcpy", "rcpy", "graphfow"])
+def test_an_import_that_is_misspelt(project: Path, module: str) -> None:
+    """The nearest of the two packages is named."""
+    (project / "machines" / "slip.py").write_text(f"import {module}\n")
+    meant = "graphflow" if module.startswith("g") else "rclpy"
+    with pytest.raises(GraphflowError, match=rf"did you mean '{meant}'\?$"):
+        import_class("machines.slip:Slip")
+
+
 def test_a_root_with_too_many_folders(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Only the first are searched for a module of a similar name."""
     assert classes.nearest_module("robto", str(project)) == "machines.robot"

@@ -44,7 +44,7 @@ def test_another_spin() -> None:
 
 
 def test_a_spin_that_a_callback_ends() -> None:
-    """What is initialized anew comes after it on purpose."""
+    """A part that is initialized anew comes after it on purpose."""
     more = "rclpy.init()\n    other = Other()\n    rclpy.spin(other)\n    other.move()"
     assert list(after_spin(ast.parse(_PROGRAM.format(more)))) == []
 
