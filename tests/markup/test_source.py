@@ -170,7 +170,8 @@ NESTED = 900
         ("a: 1\nb: 2\na: 3", "3:1: the key 'a' appears twice, first on line 1; remove one"),
         (
             "nodes:\n  /a: {x: 1}\n  /a: {x: 2}",
-            "3:3: the key '/a' appears twice, first on line 2; for two nodes, give one another name, such as /a2; else",
+            "3:3: the key '/a' appears twice, first on line 2; for two nodes, give one another name, such as /a2; else "
+            "remove one",
         ),
         ("x: {a: 1, 'a': 2}", "1:11: the key 'a' appears twice, first on line 1; remove one"),
         ("1: a", "1:1: the key 1 is not text; write it in quotes: '1'"),

@@ -65,7 +65,7 @@ LAMPS = [
     ("def tick(self):\n    print(None.x)", ""),
     (
         "def tick(self):\n    print(self.later)\ndef on_later(self):\n    self.later = 1",
-        "self.later is not there until on_later (lamp.py:12) sets it: write self.later = None in __init__, and here if "
+        "self.later is not there until on_later (lamp.py:13) sets it: write self.later = None in __init__, and here if "
         "self.later is None: return",
     ),
     (

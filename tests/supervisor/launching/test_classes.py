@@ -48,6 +48,8 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setattr(registry, "_roots", [])
     import numpy  # noqa: F401 - it cannot be imported again, once it is forgotten with the others
 
+    import graphflow.runtime.run  # noqa: F401 - nor may this be, of which graphflow keeps a function
+
     with patch.dict(sys.modules):
         add_root(str(folder.parent))
         yield folder.parent
